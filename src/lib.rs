@@ -30,6 +30,7 @@
 
 #![allow(clippy::test_attr_in_doctest, reason = "the guide shows tests that readers write")]
 
+pub mod analysis;
 pub mod build;
 pub mod guide;
 pub mod load;
@@ -43,8 +44,9 @@ pub use fragbuf_dsl::{CapturedTokens, Fragments, UniformValue, builder, closure,
 pub use fragbuf_model::{Diagnostic, Diagnostics, Draft, Selection, Severity, SourceSpan, Variant, check};
 pub use fragbuf_syntax::{Parsed, parse};
 pub use fragbuf_targets::{
-    Checked, File, Generation, Limit, Needed, Request, SCHEMA, Sharing, TARGETS, TIERS, Target, WebGpuLimit, Workgroup,
-    generate, limits, manifest, plan_json, select, target, tier,
+    Binding, BindingKind, Checked, File, Generation, JSON_SCHEMA, Limit, Needed, OpenGlBindings, Request, Requirements,
+    SCHEMA, SampleType, Sharing, TARGETS, TIERS, Target, WebGpuLimit, Workgroup, generate, limits, manifest, plan_json,
+    requirements, select, target, tier, tier_meaning,
 };
 pub use fragbuf_templates::{Registry, vocabulary};
 

@@ -9,7 +9,8 @@ use fragbuf_targets::{Request, Target, select};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::Row;
 
-use crate::{source_file, user_file};
+use crate::source_file;
+use crate::user_file::{self, UserFiles};
 
 /// A description to load.
 #[derive(Clone, Debug)]
@@ -76,16 +77,9 @@ pub fn load(
     let mut sources = vec![(description.name().to_owned(), text.clone())];
     let variant = draft(description).and_then(|(mut draft, mut diagnostics)| {
         change(&mut draft, set, defaults, registry, &mut diagnostics);
-        let user = user_file::read(&draft, registry);
-        sources.extend(user.sources);
-        draft.file_warnings = user.warnings;
-        if !user.diagnostics.is_empty() {
-            // Without the row of a file, its capabilities are unknown: the check would report all of them as missing.
-            diagnostics.extend(user.diagnostics);
-            return Err(diagnostics);
-        }
-        let files = user_file::near_names(&draft, description.name(), &user.registry);
-        Parsed { draft: Some(draft), diagnostics }.check(&user.registry).map_err(|errors| files.named_in(errors))
+        let checked = check_with_files(draft, diagnostics, description.name(), registry);
+        sources.extend(checked.sources);
+        checked.variant
     });
     let lines = |changes: &mut dyn Iterator<Item = (&str, &str)>| -> String {
         changes.map(|(name, value)| format!("{name}={value}\n")).collect()
@@ -93,6 +87,54 @@ pub fn load(
     let set = lines(&mut set.iter().map(|(name, value)| (name.as_str(), value.as_str())));
     let changes = vec![(SET.to_owned(), set), (DEFAULTS.to_owned(), lines(&mut defaults.iter().copied()))];
     Loaded { variant, sources, changes }
+}
+
+/// A draft that is checked with the user files that it names.
+pub(crate) struct CheckedWithFiles {
+    /// The variant, or every error.
+    pub(crate) variant: Result<Variant, Diagnostics>,
+    /// The sources of the files by their names in messages.
+    pub(crate) sources: Vec<(String, String)>,
+    /// The registry with the rows of the files.
+    pub(crate) registry: Registry,
+}
+
+/// Reads the files that a draft names, and checks it with their rows. `diagnostics` are the errors so far, and `name` is the name of the
+/// description in messages.
+pub(crate) fn check_with_files(
+    mut draft: Draft,
+    mut diagnostics: Diagnostics,
+    name: &str,
+    registry: &Registry,
+) -> CheckedWithFiles {
+    let UserFiles { registry, sources, diagnostics: errors, warnings } = user_file::read(&draft, registry);
+    draft.file_warnings = warnings;
+    if !errors.is_empty() {
+        // Without the row of a file, its capabilities are unknown: the check would report all of them as missing.
+        diagnostics.extend(errors);
+        return CheckedWithFiles { variant: Err(diagnostics), sources, registry };
+    }
+    let variant = check_without_files(&Parsed { draft: Some(draft), diagnostics }, name, &registry, true);
+    CheckedWithFiles { variant, sources, registry }
+}
+
+/// Checks a draft whose user files are rows of the registry. `finds_files`: errors about unknown values name user files of the same name.
+pub(crate) fn check_without_files(
+    parsed: &Parsed,
+    name: &str,
+    registry: &Registry,
+    finds_files: bool,
+) -> Result<Variant, Diagnostics> {
+    let checked = parsed.check(registry);
+    match (checked, &parsed.draft) {
+        (Err(errors), Some(draft)) if finds_files => Err(user_file::near_names(draft, name, registry).named_in(errors)),
+        (checked, _) => checked,
+    }
+}
+
+/// Whether a draft names user files.
+pub(crate) fn names_files(draft: &Draft) -> bool {
+    draft.choices.iter().flat_map(|choice| &choice.alternatives).any(|alternative| alternative.file().is_some())
 }
 
 /// Loads a description and returns the variant alone.

@@ -1,11 +1,11 @@
 //! Reads source files: descriptions, user files and WGSL files.
 //!
-//! Input: a path. Output: the text. A source is a regular file of at most [`MAX_BYTES`] bytes of UTF-8; anything else is an error.
-//! A device or a pipe may have no end, so it is not opened.
+//! Input: a path or a stream. Output: the text. A source is a regular file of at most [`MAX_BYTES`] bytes of UTF-8; anything else is an
+//! error. A device or a pipe may have no end, so a path to one is not opened.
 
 use std::fmt;
 use std::fs::File;
-use std::io::{Error, ErrorKind, Read as _, Result};
+use std::io::{Error, ErrorKind, Read, Result};
 use std::path::Path;
 
 use fragbuf_model::{Diagnostic, SourceSpan, codes};
@@ -68,12 +68,23 @@ pub fn read(path: &Path) -> Result<String> {
         let kind = if metadata.is_dir() { "a folder" } else { "a device, a pipe or a socket" };
         return Err(invalid(format!("{kind} is not a source: give a regular file")));
     }
+    read_text(File::open(path)?, metadata.len())
+}
+
+/// Reads a source from a stream to its end.
+pub fn read_stream(stream: impl Read) -> Result<String> {
+    read_text(stream, 0)
+}
+
+/// Reads a source of at least `length` bytes.
+fn read_text(stream: impl Read, length: u64) -> Result<String> {
     let mut bytes = Vec::new();
     // A file may grow after its size is read.
-    File::open(path)?.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
-    let length = metadata.len().max(bytes.len() as u64);
+    stream.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
+    let length = length.max(bytes.len() as u64);
     if length > MAX_BYTES {
-        return Err(invalid(format!("a source of {length} bytes or more: it can have {MAX_BYTES}")));
+        let message = format!("a source of {length} bytes or more: it can have {MAX_BYTES}");
+        return Err(Error::new(ErrorKind::InvalidInput, message));
     }
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();

@@ -101,6 +101,9 @@ fn every_command_prints_the_disorder() {
     for command in [&["render", "kplus_array", "--out", &path][..], &["compare", "ab_sb", "ab_ll", "--out", &path]] {
         let (_, notes) = run(command, &arranged);
         assert_eq!(notes.matches(note).count(), 1, "{command:?}: {notes}");
+        let meaning =
+            " as arranged; it is the greatest number of places between where a fragment of a pixel arrives and where";
+        assert!(notes.contains(meaning), "{notes}");
         assert!(notes.contains("`--batch` changes nothing"), "{notes}");
     }
     let (_, notes) = run(&["predict", "kplus_array"], &arranged);

@@ -65,6 +65,8 @@ fn a_placed_camera_shows_the_model_where_it_is() {
         let pixels = draw(&folder, &model, "eye:0,0,4,target:0,0,0,fov:90", device);
         assert_eq!(extent(&pixels, RED), (64, Some([32, 24, 39, 31])), "{device}");
         assert_eq!(extent(&pixels, GREEN).0, 0, "{device}");
+        let pixels = draw(&folder, &model, "eye:0,0,4,target:0,0,0,fov:90,zoom:2", device);
+        assert_eq!(extent(&pixels, RED), (256, Some([32, 16, 47, 31])), "{device}");
         // From behind, right and left change places, and so do near and far.
         let pixels = draw(&folder, &model, "eye:0,0,-6,target:0,0,0,fov:90", device);
         assert_eq!(extent(&pixels, GREEN), (64, Some([24, 24, 31, 31])), "{device}");
@@ -126,6 +128,7 @@ fn invalid_cameras_are_errors() {
         ("eye:1,2,3,fov:0", "from 0.1 to 179 degrees"),
         ("eye:1,2,3,fov:40,fov:50", "unknown or repeated field `fov`"),
         ("eye:1,2,3,target:1,2,3", "the eye and the target are the same point"),
+        ("orbit:30,20,zoom:0", "magnified by 0.01 to 1000"),
         ("eye:1e9,0,0", "100,000 times the size of the scene"),
         ("eye:1,2,3,up:0,0,1", "unknown or repeated field `up`"),
     ] {

@@ -11,10 +11,10 @@ use fragbuf_model::codes;
 use crate::cases::{checked, has_empty_list, text};
 
 /// Code, line, column, and a part of the help.
-type Expected = (&'static str, u32, u32, &'static str);
+pub type Expected = (&'static str, u32, u32, &'static str);
 
 /// Descriptions with their expected diagnostics.
-const CASES: &[(&str, &[Expected])] = &[
+pub const CASES: &[(&str, &[Expected])] = &[
     (
         "buffer B from kplus_array {\n    storage: linked_list;\n    sync: slot_counter;\n    keep 6;\n}",
         &[("keep-mismatch", 4, 10, "write `keep all;` and `cull: none`")],

@@ -1,8 +1,9 @@
 //! Tests the messages about files: models that are empty, of another kind or missing, shaders that are not valid, descriptions that
 //! are other files, and what a model has that is not read.
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 fn fragbuf(arguments: &[&str], folder: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_fragbuf")).args(arguments).current_dir(folder).output().unwrap()
@@ -313,4 +314,70 @@ fn a_loop_without_end_has_its_line() {
     assert_eq!(code, Some(3), "{text}");
     assert!(text.contains(&format!("mine.wgsl:{line}: pass `store` does not terminate")), "{text}");
     assert!(text.contains("use another device"), "{text}");
+}
+
+/// Empty names, files in place of folders, options without an effect, and sizes beyond every number: each has a sentence that says what to give.
+#[test]
+fn odd_arguments_are_explained() {
+    let folder = folder("odd");
+    std::fs::write(folder.join("file"), "").unwrap();
+    let scene = ["--scene", "builtin:cubes", "--size", "8x8", "--device", "cpu"];
+    let with_scene = |arguments: &[&'static str]| [arguments, &scene[..]].concat();
+    let no_description = "the name of the description is empty: give the key of a technique";
+    let no_scene = "the name of a scene is empty: give a model file, or a generated scene such as `builtin:cubes`";
+    for (arguments, code, expected) in [
+        (with_scene(&["render", "", "--out", "x.png"]), 2, no_description),
+        (vec!["show", " "], 2, no_description),
+        (vec!["generate", "", "--target", "wgsl", "--out", "p"], 2, no_description),
+        (with_scene(&["compare", "kb", "", "--out", "x.png"]), 2, no_description),
+        (vec!["render", "kb", "--scene", "", "--out", "x.png"], 2, no_scene),
+        (vec!["predict", "kplus_array", "--scene", ""], 2, no_scene),
+        (with_scene(&["render", "kb", "--opaque", "", "--out", "x.png"]), 2, no_scene),
+        (with_scene(&["render", "kb", "--out", ""]), 2, "the path is empty: give a file, such as image.png"),
+        (vec!["generate", "kb", "--target", "wgsl", "--out", "file"], 3, "file is a file: give a folder"),
+        (vec!["man", "--out", "file"], 3, "file is a file: give a folder"),
+        (vec!["figure", "k15-table-1", "--quick", "--out", "file"], 3, "file is a file: give a folder"),
+        (vec!["figure", "peers", "--peer", "missing"], 3, "missing is not a folder: give a checkout to `--peer`"),
+        (with_scene(&["predict", "kplus_array", "--plot", "."]), 3, ". is a folder: give a file"),
+        (with_scene(&["render", "kb", "--out", "x.png", "--order", "window:1,0"]), 2, "at least one triangle"),
+    ] {
+        let output = fragbuf(&arguments, &folder);
+        assert!(stderr(&output).contains(expected), "{arguments:?}: {}", stderr(&output));
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}");
+    }
+    let unused = fragbuf(&with_scene(&["render", "kb", "--importance", "file", "--out", "x.png"]), &folder);
+    assert!(stderr(&unused).contains("kb: `--importance` changes nothing: "), "{}", stderr(&unused));
+    let largest = fragbuf(&["show", "kb", "--size", "4294967295x4294967295"], &folder);
+    assert_eq!(largest.status.code(), Some(1));
+    assert!(stderr(&largest).contains("beyond 64 bits: give a smaller `--size`"), "{}", stderr(&largest));
+}
+
+/// Runs the command with this text on stdin.
+fn with_stdin(arguments: &[&str], text: &[u8]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fragbuf"));
+    let command = command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.current_dir(env!("CARGO_MANIFEST_DIR")).spawn().unwrap();
+    child.stdin.take().unwrap().write_all(text).unwrap();
+    child.wait_with_output().unwrap()
+}
+
+#[test]
+fn a_description_is_read_from_stdin() {
+    let shown = with_stdin(&["show", "-"], b"buffer Piped from kb { keep 3; }");
+    assert_eq!(shown.status.code(), Some(0), "{}", String::from_utf8_lossy(&shown.stderr));
+    assert!(String::from_utf8(shown.stdout).unwrap().contains("Piped"));
+    // Files that it names are relative to the current folder.
+    let described = std::fs::read_to_string("examples/user_storage/first_k.fragbuf").unwrap();
+    let moved = described.replace("first_k.wgsl", "examples/user_storage/first_k.wgsl");
+    let named = with_stdin(&["show", "-"], moved.as_bytes());
+    assert_eq!(named.status.code(), Some(0), "{}", String::from_utf8_lossy(&named.stderr));
+    assert_ne!(with_stdin(&["show", "-"], described.as_bytes()).status.code(), Some(0));
+    for (text, expected) in
+        [(&b"buffer Piped from kb {\n  kep 3;\n}"[..], "stdin:2:3"), (b"buffer \xff", "stdin:1:8"), (b"", "stdin:1:1")]
+    {
+        let failed = with_stdin(&["generate", "-", "--target", "wgsl", "--out", "unused"], text);
+        let stderr = String::from_utf8(failed.stderr).unwrap();
+        assert_eq!(failed.status.code(), Some(1), "{stderr}");
+        assert!(stderr.contains(expected), "{stderr}");
+    }
 }

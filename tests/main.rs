@@ -8,11 +8,14 @@
     reason = "a test fails by panicking, and prints its counts"
 )]
 
+mod analysis;
 mod arrangement;
 mod attributes;
 mod bindings;
 mod blocks;
+mod browser;
 mod build_script;
+mod c_header;
 mod camera;
 mod cases;
 mod catalogue;
@@ -21,6 +24,7 @@ mod closures;
 mod command_line;
 mod devices;
 mod diagnostics;
+mod editors;
 mod examples;
 #[cfg(feature = "figures")]
 mod figures;
@@ -29,7 +33,9 @@ mod fuzz;
 mod importance;
 mod inputs;
 mod instances;
+mod language_server;
 mod limits;
+mod manifests;
 mod material;
 mod memory;
 mod messages;
@@ -40,6 +46,8 @@ mod no_op_rows;
 mod opaque;
 mod options;
 mod oracle;
+mod playground;
+mod playground_requests;
 mod predict;
 mod product;
 mod quads;

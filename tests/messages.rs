@@ -6,6 +6,7 @@ use std::process::{Command, Output};
 use fragbuf::load::{Description, load, variant};
 use fragbuf::{Diagnostic, Form, Registry, Request, Severity, TARGETS, generate, guide};
 use fragbuf_model::codes;
+use fragbuf_templates::COUNTERS;
 use serde_json::Value;
 
 fn fragbuf(arguments: &[&str], folder: &Path) -> Output {
@@ -162,7 +163,17 @@ fn every_code_is_explained() {
     }
     let models = include_str!("../src/guide/model_warnings.md").matches("\n## ").count();
     assert_eq!(models, fragbuf_scene::WarningKind::ALL.len(), "a section about no code");
+    for (name, _, meaning) in COUNTERS {
+        let section = guide::explanation(name).unwrap_or_else(|| panic!("no section about {name}"));
+        assert!(section.contains(&format!("\n\n{meaning}\n\n*Cause:* ")), "{section}");
+        assert!(section.contains("\n\n*Fix:* "), "{section}");
+        let printed = fragbuf(&["explain", name], root);
+        assert_eq!(String::from_utf8(printed.stdout).unwrap(), section);
+    }
+    let counters = include_str!("../src/guide/counters.md").matches("\n## ").count();
+    assert_eq!(counters, COUNTERS.len(), "a section about no counter");
     let list = String::from_utf8(fragbuf(&["explain"], root).stdout).unwrap();
+    assert!(list.contains("\nequal_keys ") && list.contains("\ntimed_out "), "{list}");
     assert!(list.contains("\nnot-read ") && list.contains("\nmissing-attribute "), "{list}");
     let copied = fragbuf(&["explain", "warning[not-read]: x.obj:3: textures are not read"], root);
     assert!(copied.status.success());
@@ -177,7 +188,7 @@ fn every_code_is_explained() {
     assert!(copied.status.success() && copied.stdout.starts_with(b"## `unknown-axis`"));
     let list = String::from_utf8(fragbuf(&["explain"], root).stdout).unwrap();
     // Descriptions and models share two codes.
-    assert_eq!(list.lines().count(), codes::ALL.len() + models - 2);
+    assert_eq!(list.lines().count(), codes::ALL.len() + models - 2 + COUNTERS.len());
 }
 
 /// Replaces the line that has the longest beginning in common with `line`.

@@ -109,9 +109,9 @@ fn names_of_devices_and_codes_are_found_in_any_case() {
         assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""), "{device}");
     }
     let near = stderr(&fragbuf(&["explain", "unkown-axis"], &folder));
-    assert_eq!(near, "error: no diagnostic `unkown-axis`: did you mean `unknown-axis`?\n");
+    assert_eq!(near, "error: no diagnostic or counter `unkown-axis`: did you mean `unknown-axis`?\n");
     let far = stderr(&fragbuf(&["explain", "foo"], &folder));
-    assert_eq!(far, "error: no diagnostic `foo`: `fragbuf explain` lists the codes\n");
+    assert_eq!(far, "error: no diagnostic or counter `foo`: `fragbuf explain` lists the codes and counters\n");
     let slabs = ["render", "kb", "--size", "8x8", "--out", "x.png", "--scene"];
     for (scene, expected) in [
         ("builtin:slabs,n", "`n` has no value: write a whole number from 1 to 65536, as `n=16`"),
@@ -162,7 +162,74 @@ fn an_empty_image_names_the_uniforms_that_are_zero() {
     let none = render(&["--uniform", "near=2", "--uniform", "tint=1,0,0", "--uniform", "far=3"]);
     assert!(none.contains("the image is empty: check the camera and the `where` constraints\n"), "{none}");
     let drawn = render(&["--uniform", "tint=1,0,0", "--uniform", "far=3"]);
-    assert_eq!(drawn, "");
+    let unset = "warning: b.fragbuf: the uniform `near` has no value and is 0: set it with `--uniform near=NUMBER`\n";
+    assert_eq!(drawn, unset);
+    assert_eq!(render(&["--uniform", "tint=1,0,0", "--uniform", "far=3", "--uniform", "near=0"]), "");
+}
+
+/// An image that is empty for another reason than the camera has a warning with that reason, and the option to change.
+#[test]
+fn an_empty_image_has_the_reason_that_the_frame_tells() {
+    let folder = folder("empty-reason");
+    let render = |description: &str, options: &[&str]| {
+        let view = ["--scene", "builtin:cubes", "--size", "8x8", "--device", "cpu", "--out", "x.png"];
+        stderr(&fragbuf(&[&["render", description], &view[..], options].concat(), &folder))
+    };
+    let peeled = render("f2b", &["--set", "peeling.iterations=1"]);
+    assert!(!peeled.contains("check the camera"), "{peeled}");
+    assert!(peeled.contains("f2b: the image is empty, because the frame is incomplete: "), "{peeled}");
+    assert!(peeled.contains("; raise the limit with `--set peeling.iterations=2` (at most 4096)\n"), "{peeled}");
+    assert!(peeled.contains(" fragments lost: not_converged; `fragbuf explain not_converged` "), "{peeled}");
+    let text = "buffer B from ab_ll {\n    resolve |fragments, u| Vec4::ZERO;\n}";
+    std::fs::write(folder.join("clear.fragbuf"), text).unwrap();
+    let clear = render("clear.fragbuf", &["--set", "counters=all"]);
+    assert!(clear.contains(" met the constraints: the effect gives every pixel the alpha 0\n"), "{clear}");
+    let away = render("ab_ll", &["--set", "counters=all", "--camera", "eye:0,0,900,target:0,0,1800"]);
+    assert!(away.contains("the image is empty: check the camera\n"), "{away}");
+}
+
+/// Every command that reads uniforms names those that the description reads and nothing sets, once.
+#[test]
+fn uniforms_without_a_value_are_warnings() {
+    let folder = folder("unset");
+    let text = "buffer B from kb {\n    uniform { near: f32, tint: vec3, spare: vec2 }\n    \
+        where |f, u| f.depth > u.near - u.tint.x;\n}";
+    std::fs::write(folder.join("b.fragbuf"), text).unwrap();
+    let run = |command: &[&str], options: &[&str]| {
+        let scene = ["--scene", "builtin:cubes", "--size", "8x8", "--device", "cpu"];
+        let output = fragbuf(&[command, &scene[..], options].concat(), &folder);
+        assert!(output.status.success(), "{}", stderr(&output));
+        stderr(&output)
+    };
+    let both = "b.fragbuf: the uniforms `near`, `tint` have no values and are 0: set them with \
+        `--uniform near=NUMBER --uniform tint=X,Y,Z`\n";
+    let frames = ["render", "b.fragbuf", "--out", "x.png", "--frames", "2", "--json"];
+    for command in [&["predict", "b.fragbuf"][..], &["compare", "kb", "b.fragbuf", "--out", "x.png"], &frames] {
+        assert_eq!(run(command, &[]).matches(both).count(), 1, "{command:?}");
+        let found = run(command, &["--uniform", "near=0", "--uniform", "tint=0,0,0"]);
+        assert!(!found.contains("no value"), "{command:?}: {found}");
+    }
+}
+
+/// A value that an option takes only behind `=` is explained, wherever the parser found that it is one too many.
+#[test]
+fn a_value_without_its_equals_sign_is_explained() {
+    let folder = folder("equals");
+    let scene = ["--scene", "builtin:cubes", "--device", "cpu"];
+    for (before, after, tip) in [
+        (&["render", "ab_ll", "--out", "x.png"][..], &["--presort", "farthest"][..], "--presort=farthest"),
+        (&["render", "--presort", "farthest", "ab_ll"], &["--out", "x.png"], "--presort=farthest"),
+        (&["predict", "kplus_array"], &["--coplanarity", "heat.png"], "--coplanarity=heat.png"),
+        (&["predict", "--coplanarity", "heat.png"], &["kplus_array"], "--coplanarity=heat.png"),
+    ] {
+        let output = fragbuf(&[before, &scene[..], after].concat(), &folder);
+        let (option, value) = tip.split_once('=').unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        let expected = format!("to give `{value}` to `{option}`, write `{tip}`");
+        assert!(stderr(&output).contains(&expected), "{}", stderr(&output));
+    }
+    let other = stderr(&fragbuf(&[&["render", "ab_ll", "kb", "--presort"], &scene[..]].concat(), &folder));
+    assert!(!other.contains("to give"), "{other}");
 }
 
 /// Files for other targets are no waste: the warning says how to keep them. `--clean` removes folders that become empty.
@@ -229,6 +296,12 @@ fn buffers_of_one_shader_have_different_names() {
     assert!(output.status.success() && stderr(&output).contains("also has the bind group 1"), "{}", stderr(&output));
     let output = generate("module", "far", "2", &with, "far");
     assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
+    // OpenGL has no groups.
+    let glsl =
+        ["generate", "kb", "--target", "glsl", "--form", "module", "--prefix", "far", "--group", "2", "--out", "glsl"];
+    let output = fragbuf(&[&glsl[..], &with[..]].concat(), &folder);
+    let text = stderr(&output);
+    assert!(output.status.success() && text.contains("`glShaderStorageBlockBinding`"), "{text}");
 }
 
 /// The README's synopsis has every option of every command.

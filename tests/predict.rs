@@ -88,10 +88,24 @@ fn bad_input_has_its_numbers() {
         assert!(message.contains("at most 1"), "{message}");
     }
     // Storages that have neither slots per pixel nor regions limited to k.
-    for key in ["kb_ab_ll", "ab_ll", "z_buffer"] {
+    let ranges = "what `storage: depth_ranges` keeps and its memory do not follow from k and the numbers of fragments";
+    for (key, reason) in [
+        ("ab_ll", "ab_ll: it keeps every fragment, so it has no k. "),
+        ("f2b", "f2b: what `storage: depth_tested` keeps"),
+        ("f2b_ll", "f2b_ll: it keeps every fragment, so it has no k. "),
+        ("kb_ab_ll", "what `storage: linked_list` keeps"),
+        ("z_buffer", "what `storage: depth_tested` keeps"),
+        ("kb_sr", "what `storage: stencil_routed` keeps"),
+        ("bad", "what `storage: adaptive_ranges` keeps"),
+        ("kb_stream", "what `storage: stream_array` keeps"),
+        ("depth_partition", ranges),
+    ] {
         let message = failed(&[key]);
+        assert!(message.contains(reason), "{message}");
         assert!(message.contains("k slots per pixel") && message.contains("kplus_array,"), "{message}");
     }
+    let message = failed(&["kplus_array", "--coplanarity="]);
+    assert!(message.contains("the path is empty: give a file, such as image.png"), "{message}");
     for set in ["k=4", "allocation=described", "allocation.hit_ratio=50"] {
         let message = failed(&["kplus_array", "--set", set]);
         assert!(message.contains("`predict` chooses k itself"), "{message}");

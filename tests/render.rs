@@ -396,8 +396,8 @@ fn attribute_names_select_scene_data_and_arguments_set_uniforms() {
     let with = |uniforms: &[&str]| {
         render(&folder, &[&[description, "--scene", model, "--background", "0,0,0,1"], uniforms].concat())[0]
     };
-    assert_eq!(with(&[]), [0, 0, 0, 255]);
-    assert_eq!(with(&["--uniform", "tint=0,1,0.2"]), [0, 255, 51, 255]);
+    assert_eq!(with(&["--uniform", "cut=0", "--uniform", "tint=0,0,0"]), [0, 0, 0, 255]);
+    assert_eq!(with(&["--uniform", "cut=0", "--uniform", "tint=0,1,0.2"]), [0, 255, 51, 255]);
     let out = folder.join("none.png");
     let output = fragbuf(&[
         "render",
@@ -523,4 +523,23 @@ fn missing_parts_of_models_are_warnings_or_errors() {
     std::fs::write(&model, "v -1 -1 0.5\nv 1 -1 0.5\nv 1 1 0.5\nf 1 2 3\n").unwrap();
     let drawn = fragbuf(&[&arguments[..], &color, &["--strict"]].concat());
     assert_eq!((drawn.status.code(), stderr(&drawn)), (Some(0), String::new()));
+}
+
+#[test]
+fn one_layer_alone_and_loops_that_end_on_the_device() {
+    let folder = folder("layers");
+    let model = write(&folder, &quads(9, 5, Colors::Bytes));
+    let set = ["dual", "--scene", model.to_str().unwrap(), "--set", "peeling.iterations=24"];
+    let drawn = |more: &[&str]| render(&folder, &[&set[..], more].concat());
+    let whole = drawn(&[]);
+    assert_eq!(drawn(&["--loops", "device"]), whole);
+    let (front, back) = (drawn(&["--layer", "0"]), drawn(&["--layer", "1"]));
+    assert_eq!(back, drawn(&["--set", "resolve=layer", "--set", "resolve.number=1"]));
+    assert!(front != back && front != whole);
+    let model = ["--scene", model.to_str().unwrap(), "--camera", "clip", "--out", "-"];
+    let output = fragbuf(&[&["render", "f2b", "--layer", "40", "--device", "cpu"], &model[..]].concat());
+    assert!(stderr(&output).contains("no pixel has the layer 40"), "{}", stderr(&output));
+    let output = fragbuf(&["render", "kb_stream", "--scene", "builtin:marbles", "--layer", "0", "--out", "-"]);
+    assert!(stderr(&output).contains("`resolve: layer`"), "{}", stderr(&output));
+    assert_eq!(output.status.code(), Some(1));
 }

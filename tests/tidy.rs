@@ -10,7 +10,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Returns the files under `folder` with this extension, without build folders.
+/// Returns the files under `folder` with this extension, without build folders and bundles of others.
 fn files(folder: &str, extension: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut waiting = vec![root().join(folder)];
@@ -19,7 +19,9 @@ fn files(folder: &str, extension: &str) -> Vec<PathBuf> {
             let path = entry.unwrap().path();
             let name = path.file_name().unwrap().to_string_lossy().into_owned();
             match path.is_dir() {
-                true if name != "target" && name != "node_modules" && !name.starts_with('.') => waiting.push(path),
+                true if !["target", "node_modules", "vendor"].contains(&&*name) && !name.starts_with('.') => {
+                    waiting.push(path);
+                }
                 false if path.extension().is_some_and(|found| found == extension) => found.push(path),
                 _ => {}
             }
@@ -85,13 +87,14 @@ fn no_code_compares_a_key() {
         ("one", "a blend factor"),
         ("early", "a field of a depth test in the manifest"),
         ("interlock", "a feature in the manifest"),
+        ("layer", "a prefix of generated names"),
     ];
     let registry = Registry::builtin();
     let chosen = |axis: &str| registry.axis(axis).is_some_and(|axis| axis.chosen);
     let rows = registry.rows().iter().filter(|row| chosen(&row.axis)).map(|row| row.key.clone());
     let keys: Vec<String> = rows.chain(registry.techniques().iter().map(|technique| technique.key.clone())).collect();
     for folder in ["src", "dsl", "codegen", "backends"] {
-        for path in files(folder, "rs") {
+        for path in [files(folder, "rs"), files(folder, "mjs")].concat() {
             let shown = path.to_string_lossy();
             // Rows of experiments name techniques as data, and contain no code.
             if shown.contains("/tests/") || shown.contains("/examples/") || shown.contains("/figure/experiments/") {
@@ -149,6 +152,11 @@ fn files_are_short_and_have_headers() {
             assert!(is_test || code <= 400, "{}: {code} lines", path.display());
             assert!(is_test || text.starts_with("//!"), "{} has no header", path.display());
         }
+        for path in files(folder, "mjs") {
+            let text = read(&path);
+            assert!(text.lines().count() <= 400, "{}", path.display());
+            assert!(text.starts_with("/**\n * "), "{} has no header", path.display());
+        }
     }
 }
 
@@ -177,7 +185,7 @@ fn every_crate_can_be_published() {
     let manifests =
         ["templates", "dsl", "codegen", "backends", "examples"].iter().flat_map(|folder| files(folder, "toml"));
     let crates: Vec<PathBuf> = manifests.filter(|path| path.ends_with("Cargo.toml")).collect();
-    assert_eq!(crates.len(), 17);
+    assert_eq!(crates.len(), 19);
     for path in crates.into_iter().chain([root().join("Cargo.toml")]) {
         let text = read(&path);
         let name = text.split("[package]\nname = \"").nth(1).and_then(|rest| rest.split('"').next()).unwrap();
@@ -501,6 +509,22 @@ fn generating_needs_no_wgpu() {
     assert!(tree.contains("naga") && !tree.contains("wgpu"), "{tree}");
     // Snapshot tests use the caller's insta.
     assert!(!tree.contains("insta"), "{tree}");
+}
+
+/// Without features, and with `pictures` alone, the library and the command line compile without warnings.
+#[test]
+fn fewer_features_compile() {
+    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap();
+    for features in ["", "pictures"] {
+        let output = std::process::Command::new(env!("CARGO"))
+            .args(["check", "--offline", "--quiet", "--lib", "--bins", "--no-default-features", "--features", features])
+            .current_dir(root())
+            .env("CARGO_TARGET_DIR", target)
+            .output()
+            .unwrap();
+        let text = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success() && text.is_empty(), "--features \"{features}\": {text}");
+    }
 }
 
 fn tree(arguments: &[&str]) -> String {

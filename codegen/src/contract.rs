@@ -225,6 +225,12 @@ pub const CONTRACTS: &[Contract] = &[
         "(color: vec3<f32>, transmittance: f32)",
         "saves both, for the fragments of the next iteration",
     ),
+    row(
+        "peeling",
+        "peeling_layer",
+        "(index: u32) -> u32",
+        "returns the number of the layer of a fragment that an effect reads: its place, or that of what the iteration stores",
+    ),
     row("peeling", "peeling_result", "(pixel: u32) -> vec4<f32>", "returns the premultiplied colour of the pixel"),
     row("sort", "sort_begin", "()", "forgets the fragments that were added"),
     row("sort", "sort_gather", "(entry: Packed)", "adds one fragment of the pixel"),

@@ -1,75 +1,19 @@
-//! The symbols of a plan, and formulas over them.
+//! The symbols of a plan, and the values of formulas over them.
 //!
 //! Input: the table of the vocabulary ([`SYMBOLS`]), the parameters of the selected rows, the symbols that rows define. Output: one
 //! table with a handle per symbol, and formulas whose symbols are handles. The table has no values that a frame sets.
 
-use std::fmt;
+mod handle;
+mod quantity;
 
 use fragbuf_templates::vocabulary::{
     BindingTime, Expression, Formula, FormulaError, SYMBOLS, Setter, Symbol, Text, apply, is_reserved_in_formulas,
 };
 
+pub use handle::SymbolId;
+pub use quantity::{Quantity, Term, is_boolean};
+
 use crate::definitions::{DefinitionError, DefinitionProblem, NameTaken};
-
-/// The handle of a symbol of a plan: its index in the [`SymbolTable`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct SymbolId(u16);
-
-impl SymbolId {
-    /// Columns of the frame.
-    pub const WIDTH: SymbolId = builtin("width");
-    /// Rows of the frame, or of a slice.
-    pub const HEIGHT: SymbolId = builtin("height");
-    /// The first row of a slice.
-    pub const FIRST_ROW: SymbolId = builtin("first_row");
-    /// Pixels of the frame and of its padding.
-    pub const PIXELS: SymbolId = builtin("pixels");
-    /// Fragments that a pixel keeps.
-    pub const K: SymbolId = builtin("k");
-    /// Slots of each pixel in a fixed array.
-    pub const N: SymbolId = builtin("n");
-    /// Fragments that fit in a pool.
-    pub const FRAGMENTS: SymbolId = builtin("fragments");
-    /// Fragments that fit in exact regions.
-    pub const KEPT: SymbolId = builtin("kept");
-    /// The iteration of the innermost loop.
-    pub const ITERATION: SymbolId = builtin("iteration");
-    /// The largest k that the code supports.
-    pub const CAPACITY: SymbolId = builtin("capacity");
-    /// Words of a stored fragment.
-    pub const ENTRY_WORDS: SymbolId = builtin("entry_words");
-    /// Words of a stored fragment without its key.
-    pub const VALUE_WORDS: SymbolId = builtin("value_words");
-
-    /// Returns the index in the table.
-    pub fn index(self) -> usize {
-        usize::from(self.0)
-    }
-}
-
-/// Returns the handle of a symbol that every plan has. A name that is not in the table does not compile.
-const fn builtin(name: &str) -> SymbolId {
-    let mut index = 0;
-    while index < SYMBOLS.len() {
-        if is_equal(SYMBOLS[index].name.as_bytes(), name.as_bytes()) {
-            return SymbolId(index as u16);
-        }
-        index += 1;
-    }
-    // Evaluated only by the compiler, which reports the panic as an error.
-    #[allow(clippy::panic, reason = "an error at compile time")]
-    {
-        panic!("not a symbol of the vocabulary")
-    }
-}
-
-const fn is_equal(a: &[u8], b: &[u8]) -> bool {
-    let mut index = 0;
-    while index < a.len() && index < b.len() && a[index] == b[index] {
-        index += 1;
-    }
-    index == a.len() && index == b.len()
-}
 
 /// The symbols of a plan: those of the vocabulary in its order, then the parameters of rows, named by their constants.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -103,31 +47,6 @@ pub enum PlanValue {
     Default(Quantity),
     /// No value: the frame sets it.
     Open,
-}
-
-/// A formula over the symbols of one plan.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Quantity {
-    text: Formula,
-    resolved: Term,
-    /// The term after evaluation of the parts whose values are known at generation.
-    folded: Term,
-}
-
-/// Tests whether the result of an operator is a Boolean, which is a separate type in generated code.
-pub fn is_boolean(operator: &str) -> bool {
-    matches!(operator, "==" | "!=" | "<" | "<=" | ">" | ">=" | "&&" | "||")
-}
-
-/// A formula with resolved symbols.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Term {
-    /// A whole number.
-    Number(u64),
-    /// A symbol.
-    Symbol(SymbolId),
-    /// An operator or a function, by its spelling.
-    Apply(&'static str, Vec<Term>),
 }
 
 impl SymbolTable {
@@ -323,53 +242,6 @@ fn open(symbol: &Symbol) -> PlanSymbol {
         set_by: symbol.set_by,
         range: symbol.range,
         value: PlanValue::Open,
-    }
-}
-
-impl Term {
-    fn greatest_number(&self) -> Option<u64> {
-        match self {
-            Term::Number(number) => Some(*number),
-            Term::Symbol(_) => None,
-            Term::Apply(_, arguments) => arguments.iter().filter_map(Term::greatest_number).max(),
-        }
-    }
-}
-
-impl Quantity {
-    /// Returns the formula as written.
-    pub fn formula(&self) -> &Formula {
-        &self.text
-    }
-
-    /// Returns the resolved formula for generated code, after evaluation of the parts whose values are known at generation.
-    pub fn term(&self) -> &Term {
-        &self.folded
-    }
-
-    /// Tests whether the formula names the symbol.
-    pub fn mentions(&self, id: SymbolId) -> bool {
-        self.symbols().contains(&id)
-    }
-
-    /// Returns the symbols that the formula names.
-    pub fn symbols(&self) -> Vec<SymbolId> {
-        fn collect(term: &Term, symbols: &mut Vec<SymbolId>) {
-            match term {
-                Term::Number(_) => {}
-                Term::Symbol(id) => symbols.push(*id),
-                Term::Apply(_, arguments) => arguments.iter().for_each(|argument| collect(argument, symbols)),
-            }
-        }
-        let mut symbols = Vec::new();
-        collect(&self.resolved, &mut symbols);
-        symbols
-    }
-}
-
-impl fmt::Display for Quantity {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.text.fmt(f)
     }
 }
 

@@ -17,6 +17,7 @@ pub(crate) struct Geometry {
     pub(crate) indices: Vec<u32>,
     pub(crate) objects: Vec<Range<u32>>,
     /// The words of a vertex; the first three are its position.
+    #[cfg_attr(not(feature = "gpu"), allow(dead_code, reason = "only GPUs draw boxes of objects"))]
     pub(crate) stride: usize,
     /// The memory that is left beside them.
     pub(crate) memory: Budget,
@@ -33,6 +34,12 @@ struct SceneData {
     read: ReadWords,
     /// Whether an attribute of the model with this name has precedence.
     is_default: bool,
+    /// Whether light changes it.
+    #[cfg_attr(
+        not(feature = "playground"),
+        allow(dead_code, reason = "only the page of the playground lights vertices itself")
+    )]
+    is_color: bool,
 }
 
 const SCENE_DATA: [SceneData; 4] = [
@@ -41,20 +48,29 @@ const SCENE_DATA: [SceneData; 4] = [
         formats: &[Format::Rgba8, Format::Rgba16, Format::Vec4, Format::Vec3],
         read: |object, _, vertex| bits(&object.colors, vertex),
         is_default: false,
+        is_color: true,
     },
     SceneData {
         names: &["alpha"],
         formats: &[Format::F32],
         read: |object, _, vertex| [bits(&object.colors, vertex)[3], 0, 0, 0],
         is_default: false,
+        is_color: false,
     },
     SceneData {
         names: &["normal"],
         formats: &[Format::Octahedral, Format::Vec3],
         read: |object, _, vertex| bits(&object.normals, vertex),
         is_default: false,
+        is_color: false,
     },
-    SceneData { names: &["id", "object"], formats: &[Format::U32], read: |_, id, _| [id, 0, 0, 0], is_default: true },
+    SceneData {
+        names: &["id", "object"],
+        formats: &[Format::U32],
+        read: |_, id, _| [id, 0, 0, 0],
+        is_default: true,
+        is_color: false,
+    },
 ];
 
 /// Returns the data of every scene with this name.
@@ -205,6 +221,20 @@ pub(crate) fn geometry(
         indices.extend(scene.corners(*id).into_iter().flatten().map(|index| begin + index));
     }
     Ok(Geometry { vertices, indices, objects, stride, memory })
+}
+
+/// Returns the first word of the colour in a vertex; `None`: the description has no colour of the scene.
+#[cfg(feature = "playground")]
+pub(crate) fn color_offset(attributes: &[fragbuf_model::Attribute]) -> Option<usize> {
+    let mut offset = 3;
+    for attribute in attributes.iter().filter(|attribute| attribute.name.value != DEPTH) {
+        let (name, format) = (attribute.name.value.as_str(), attribute.format.value);
+        if scene_row(name).is_some_and(|row| row.is_color && row.formats.contains(&format)) {
+            return Some(offset);
+        }
+        offset += words(format);
+    }
+    None
 }
 
 /// Checks that every attribute of the descriptions has a source.

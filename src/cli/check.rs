@@ -29,7 +29,7 @@ const ENTRIES: std::ops::RangeInclusive<i64> = 1..=7;
 #[derive(clap::Args)]
 #[command(group(clap::ArgGroup::new("what").required(true).args(["description", "wgsl"])))]
 pub(crate) struct Check {
-    /// Technique key or .fragbuf file
+    /// Technique key, .fragbuf file, or `-` for a description on stdin
     description: Option<String>,
     /// Check a WGSL file instead of a description. If it declares `holds() -> bool`, that function must return true in every
     /// final state

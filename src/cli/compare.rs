@@ -20,9 +20,9 @@ use super::view::{SceneView, View, scenes};
 #[derive(clap::Args)]
 #[command(after_help = scenes())]
 pub(crate) struct Compare {
-    /// Technique key or .fragbuf file
+    /// Technique key, .fragbuf file, or `-` for a description on stdin
     first: String,
-    /// Technique key or .fragbuf file to compare it with
+    /// The one to compare it with, in the same way
     second: String,
     /// Change both descriptions: axis=value, axis.option=value or k=8
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
@@ -124,6 +124,7 @@ impl Compare {
         // Before the first image is rendered.
         for side in [&first, &second] {
             uniforms::values(&side.uniforms, &side.variant)?;
+            uniforms::warn_unset(side.description, &side.uniforms, &side.variant);
         }
         Ok([first, second])
     }
@@ -144,7 +145,8 @@ impl Side<'_> {
     fn request<'a>(&'a mut self, opaque: Option<&'a SceneView>, held: u64) -> (RenderRequest<'a>, &'a mut Input) {
         let Side { description, input, set, uniforms, .. } = self;
         // The hit ratio needs every event.
-        (RenderRequest { description, set, uniforms, count_all: true, opaque, held, lagged: None, words: &[] }, input)
+        let request = RenderRequest::new(description);
+        (RenderRequest { set, uniforms, count_all: true, opaque, held, ..request }, input)
     }
 }
 

@@ -50,6 +50,7 @@ pub(crate) fn order(text: &str) -> Result<FragmentOrder, String> {
         ("submission", ..) => Ok(FragmentOrder::Submission),
         (_, Some(seed), _) => Ok(FragmentOrder::Shuffled(seed)),
         (_, _, Some((seed, triangles @ 1..))) => Ok(FragmentOrder::Window { seed, triangles }),
-        _ => Err("write submission, shuffle:SEED, or window:SEED,TRIANGLES with whole numbers".to_owned()),
+        _ => Err("write submission, shuffle:SEED, or window:SEED,TRIANGLES with whole numbers, at least one triangle"
+            .to_owned()),
     }
 }

@@ -1,5 +1,5 @@
 //! Finds the files of earlier runs in a folder. Only files that the folder's manifest lists are ever removed: those of the run before
-//! as `files`, and those that were left before as `earlier_files`. If this run writes nothing in the folder, the manifest is one of them.
+//! as `files` and `c_header`, and those that were left before as `earlier_files`. If this run writes nothing in the folder, the manifest is one of them.
 
 use std::fs;
 use std::path::{Component, Path, PathBuf};
@@ -20,8 +20,8 @@ pub(crate) struct EarlierFiles {
 }
 
 impl EarlierFiles {
-    /// Finds the files, before this run writes its own.
-    pub(crate) fn find(folder: &Path, generation: &Generation) -> Self {
+    /// Finds the files, before this run writes its own and `header`.
+    pub(crate) fn find(folder: &Path, generation: &Generation, header: Option<&str>) -> Self {
         let mut found = EarlierFiles { folder: folder.to_owned(), files: Vec::new() };
         let Ok(text) = fs::read_to_string(folder.join(MANIFEST)) else { return found };
         let Ok(manifest) = serde_json::from_str::<Value>(&text) else { return found };
@@ -30,10 +30,11 @@ impl EarlierFiles {
         }
         let list = |name: &str| manifest[name].as_array().into_iter().flatten();
         let files = list("files").filter_map(|file| file["path"].as_str());
-        for path in files.chain(list("earlier_files").filter_map(Value::as_str)) {
+        let earlier = list("earlier_files").chain([&manifest["c_header"]]).filter_map(Value::as_str);
+        for path in files.chain(earlier) {
             // A path that leaves the folder is not of a manifest that fragbuf wrote.
             let is_inside = Path::new(path).components().all(|part| matches!(part, Component::Normal(_)));
-            let is_written = generation.files.iter().any(|file| file.path == path);
+            let is_written = header == Some(path) || generation.files.iter().any(|file| file.path == path);
             let path = PathBuf::from(path);
             if is_inside && !is_written && !found.files.contains(&path) && folder.join(&path).is_file() {
                 found.files.push(path);

@@ -8,6 +8,7 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 use fragbuf::{Form, Generation, Registry, Request, generate, manifest};
+use fragbuf_targets::{c_header, c_name};
 
 use super::assignment::assignment;
 use super::earlier::EarlierFiles;
@@ -19,7 +20,7 @@ use super::{limits, targets};
 #[derive(clap::Args)]
 #[command(group(clap::ArgGroup::new("what").required(true).args(["description", "all"])))]
 pub(crate) struct Generate {
-    /// Technique key or .fragbuf file
+    /// Technique key, .fragbuf file, or `-` for a description on stdin
     description: Option<String>,
     /// Generate every technique, each in a folder named after its key
     #[arg(long)]
@@ -42,6 +43,10 @@ pub(crate) struct Generate {
     /// Manifest of another buffer in the same shader: warns if both together exceed what every WebGPU device has
     #[arg(long, value_name = "MANIFEST")]
     with: Vec<PathBuf>,
+    /// Also write bindings for a language beside the manifest. `c`: a header with constants, structs of the uniform blocks, sizes of buffers as
+    /// functions, and the steps of a frame as tables, for C11 and C++17. Its names begin with the prefix, or else with the name of the description
+    #[arg(long, value_enum, value_name = "LANGUAGE")]
+    bindings: Option<Language>,
     /// Output folder
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
@@ -52,6 +57,12 @@ pub(crate) struct Generate {
     /// Generate again whenever the description, or a user file that it names, changes. Ctrl-C ends
     #[arg(long)]
     watch: bool,
+}
+
+/// The languages of bindings that the command line writes. Those of Rust are written by build scripts.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Language {
+    C,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -80,6 +91,7 @@ impl Generate {
             let help = format!("`fragbuf show {description} --dump wgsl` prints the sources");
             return Err(Failure::Usage(format!("`generate` writes a folder, and `-` is none: {help}")));
         }
+        Failure::unless_folder(&self.out)?;
         let registry = Registry::builtin();
         let targets = targets::several(&self.target)?;
         let form = match self.form {
@@ -99,7 +111,7 @@ impl Generate {
             variants.push(variant?);
             inputs.push((argument, input));
         }
-        let mut folders: Vec<(PathBuf, Generation)> = Vec::new();
+        let mut folders: Vec<(PathBuf, Generation, Option<Header>)> = Vec::new();
         let generations = on_all_cores(&variants, |variant| generate(variant, &request, &registry));
         for (((argument, input), variant), generation) in inputs.into_iter().zip(&variants).zip(generations) {
             let generation = generation.map_err(|errors| input.failure(errors))?;
@@ -107,18 +119,23 @@ impl Generate {
                 return Err(targets::unsupported(&input, variant, &request, &self.set, &registry));
             }
             let folder = if self.all { self.out.join(&argument) } else { self.out.clone() };
-            folders.push((folder, generation));
+            let header = self.bindings.filter(|_| !generation.plans.is_empty()).map(|Language::C| {
+                let name = c_name(if self.prefix.is_empty() { stem(&argument, &registry) } else { &self.prefix });
+                Header { text: c_header(&generation, &name, &argument, self.group), path: format!("{name}.h") }
+            });
+            folders.push((folder, generation, header));
         }
-        if folders.iter().all(|(_, generation)| generation.plans.is_empty()) {
+        if folders.iter().all(|(_, generation, _)| generation.plans.is_empty()) {
             return Err(Failure::Usage(NOTHING.to_owned()));
         }
         let others = self.with.iter().map(|path| limits::read(path)).collect::<Result<Vec<_>, _>>()?;
         limits::check_names(form, &self.prefix, self.group, &others)?;
-        for (folder, generation) in &folders {
+        for (folder, generation, header) in &folders {
             limits::warn(generation, self.group, &others);
-            let earlier = EarlierFiles::find(folder, generation);
+            let header_path = header.as_ref().map(|header| header.path.as_str());
+            let earlier = EarlierFiles::find(folder, generation, header_path);
             if !generation.plans.is_empty() {
-                self.write(folder, generation, &earlier)?;
+                self.write(folder, generation, header.as_ref(), &earlier)?;
             }
             match self.clean {
                 true => earlier.remove()?,
@@ -132,7 +149,13 @@ impl Generate {
     }
 
     /// Writes every file once, and the manifest, which also lists the files of earlier runs that stay.
-    fn write(&self, folder: &Path, generation: &Generation, earlier: &EarlierFiles) -> Result<(), Failure> {
+    fn write(
+        &self,
+        folder: &Path,
+        generation: &Generation,
+        header: Option<&Header>,
+        earlier: &EarlierFiles,
+    ) -> Result<(), Failure> {
         let mut seen: Vec<&str> = Vec::new();
         for file in &generation.files {
             if !seen.contains(&file.path.as_str()) {
@@ -141,11 +164,28 @@ impl Generate {
             }
         }
         let mut manifest = manifest(generation, self.group);
-        manifest["prefix"] = self.prefix.as_str().into();
+        if let Some(Header { path, text }) = header {
+            manifest["c_header"] = path.as_str().into();
+            write_file(&folder.join(path), text.as_bytes())?;
+        }
         if !self.clean {
             earlier.list_in(&mut manifest);
         }
         write_file(&folder.join("manifest.json"), output::json(&manifest).as_bytes())
+    }
+}
+
+/// A header of C: its path in the output folder, and its content.
+struct Header {
+    path: String,
+    text: String,
+}
+
+/// Returns the name of a description in bindings: the key of a technique, or the name of a file without its extension.
+fn stem<'a>(description: &'a str, registry: &Registry) -> &'a str {
+    match registry.technique(description) {
+        Some(_) => description,
+        None => Path::new(description).file_stem().and_then(|stem| stem.to_str()).unwrap_or(description),
     }
 }
 

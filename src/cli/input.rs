@@ -1,12 +1,19 @@
-//! Reads the first argument of most commands: the key of a technique, or the file of a description.
+//! Reads the first argument of most commands: the key of a technique, the file of a description, or `-` for a description on stdin.
 
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use fragbuf::load::{Description, SET, load};
 use fragbuf::{Diagnostic, Diagnostics, Registry, Variant, source_file};
 use fragbuf_model::{SourceSpan, codes, nearest_name};
 
 use super::output::{self, Failure};
+
+/// The argument for the description on stdin.
+const STDIN: &str = "-";
+
+/// The description on stdin, which can be read once. Commands that draw several frames read their input for each.
+static STDIN_TEXT: OnceLock<std::io::Result<String>> = OnceLock::new();
 
 /// A description as given, and the sources that its diagnostics quote.
 pub(crate) struct Input {
@@ -23,9 +30,18 @@ pub(crate) struct Input {
 }
 
 impl Input {
-    /// Reads the technique of this key, or the file of this name.
+    /// Reads the technique of this key, the file of this name, or stdin. Paths in a description on stdin are relative to the current folder.
     pub(crate) fn read(argument: &str, registry: &Registry) -> Result<Self, Failure> {
         let path = Path::new(argument);
+        if argument.trim().is_empty() {
+            let help = "give the key of a technique, which `fragbuf list` lists, or a .fragbuf file";
+            return Err(Failure::Usage(format!("the name of the description is empty: {help}")));
+        }
+        if argument == STDIN {
+            let text = STDIN_TEXT.get_or_init(|| source_file::read_stream(std::io::stdin().lock()));
+            let text = text.as_ref().map_err(|error| Failure::source(Path::new("stdin"), error))?;
+            return Ok(Input::of(Description::Text { file: "stdin".to_owned(), text: text.clone() }));
+        }
         if registry.technique(argument).is_none() {
             other_file(argument, path, registry)?;
         }

@@ -63,8 +63,16 @@ pub(super) fn check_names(form: Form, prefix: &str, group: u32, others: &[OtherB
     Ok(())
 }
 
-/// Warns about limits that portable WGSL exceeds, alone or with the other buffers.
+/// Warns about limits that portable WGSL exceeds, alone or with the other buffers, and about equal numbers in OpenGL, which has no groups.
 pub(super) fn warn(generation: &Generation, group: u32, others: &[OtherBuffer]) {
+    let mut targets = generation.plans.iter().flat_map(|planned| &planned.targets);
+    if let (Some(target), Some(_)) = (targets.find(|target| target.api.0.starts_with("opengl")), others.first()) {
+        output::warn(&format!(
+            "in {} all buffers have the same binding numbers: number the blocks and textures of one again after linking, by \
+             `glShaderStorageBlockBinding`, `glUniformBlockBinding` and `glUniform1i`",
+            target.name
+        ));
+    }
     let portable = generation.plans.iter().filter(|planned| planned.targets.iter().any(|target| target.name == "wgsl"));
     for planned in portable {
         for limit in fragbuf::limits(&planned.plan, group, &planned.workgroups) {

@@ -1,7 +1,8 @@
 //! `fragbuf list`: lists techniques and axes, computed from the registry rows.
 
+use fragbuf::analysis;
 use fragbuf::{Arrival, Form, Generation, Plan, Registry, Request, TARGETS, TIERS, Target, generate, tier};
-use fragbuf_templates::vocabulary::{Parameter, ParameterType, Row, Technique};
+use fragbuf_templates::vocabulary::{Row, Technique};
 use serde_json::{Map, Value, json};
 
 use super::input::Input;
@@ -62,22 +63,11 @@ fn axes(registry: &Registry) -> String {
         rows.sort_by_key(|row| axis.default != Some(row.key.as_str()));
         for (number, row) in rows.iter().enumerate() {
             let name = if number == 0 { axis.key } else { "" };
-            let options: Vec<String> = row.parameters.iter().map(option).collect();
+            let options: Vec<String> = row.parameters.iter().map(analysis::option).collect();
             text.push_str(&format!("| {name} | `{}` | {} | {} |\n", row.key, row.summary, options.join("; ")));
         }
     }
     text
-}
-
-/// Returns an option with its default, its range and what it does.
-fn option(parameter: &Parameter) -> String {
-    let (least, greatest) = parameter.range;
-    let range = match parameter.kind {
-        ParameterType::Number => format!(", from {least} to {greatest}"),
-        ParameterType::PowerOfTwo => format!(", a power of two from {least} to {greatest}"),
-        ParameterType::Attribute => ", an attribute".to_owned(),
-    };
-    format!("`{}: {}`{range}: {}", parameter.name, parameter.default, parameter.summary)
 }
 
 /// Returns a technique as JSON.

@@ -23,6 +23,7 @@ impl Manual {
             Man::new(command).render(&mut page).map_err(|error| Failure::Files(error.to_string()))?;
             return output::print(&String::from_utf8_lossy(&page));
         };
+        Failure::unless_folder(folder)?;
         std::fs::create_dir_all(folder).map_err(|error| Failure::files(folder, &error))?;
         clap_mangen::generate_to(command, folder).map_err(|error| Failure::files(folder, &error))
     }

@@ -32,6 +32,7 @@ mod input;
 mod language;
 mod limits;
 mod list;
+mod lsp;
 mod manual;
 #[cfg(feature = "pictures")]
 mod memory;
@@ -41,6 +42,8 @@ mod page;
 mod paper_table;
 #[cfg(feature = "pictures")]
 mod picture;
+#[cfg(feature = "playground")]
+mod playground;
 #[cfg(feature = "pictures")]
 mod predict;
 #[cfg(feature = "pictures")]
@@ -93,7 +96,7 @@ enum Command {
     Show(show::Show),
     /// Print the reference of the closure language
     Language(language::Language),
-    /// Explain a diagnostic: its cause, an example and the fix
+    /// Explain a diagnostic or a counter: its cause and the fix, for most an example
     Explain(explain::Explain),
     /// Write the passes of a description, or of every technique, for one or more targets
     Generate(generate::Generate),
@@ -114,6 +117,11 @@ enum Command {
     /// Repeat an experiment of a paper: write its measurements (CSV) and chart (SVG), and compare the trend with the paper's
     #[cfg(feature = "figures")]
     Figure(figure::Figure),
+    /// Open a page to edit a description, see its picture, its cost and its text, and check it
+    #[cfg(feature = "playground")]
+    Playground(playground::Playground),
+    /// Answer an editor by the Language Server Protocol, on stdin and stdout
+    Lsp(lsp::Lsp),
     /// Print the completions for a shell
     Completions(completions::Completions),
     /// Print the manual page, or write one page per command
@@ -135,6 +143,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Completions(completions) => completions.run(),
         Command::Man(manual) => manual.run(),
         Command::Generate(generate) => generate.run(),
+        Command::Lsp(lsp) => return lsp.run().unwrap_or_else(Failure::report),
         Command::Check(check) => return check.run().unwrap_or_else(Failure::report),
         #[cfg(feature = "pictures")]
         Command::Render(render) => render.run(),
@@ -146,6 +155,8 @@ pub(crate) fn run() -> ExitCode {
         Command::Devices(devices) => devices.run(),
         #[cfg(feature = "figures")]
         Command::Figure(figure) => figure.run(),
+        #[cfg(feature = "playground")]
+        Command::Playground(playground) => playground.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

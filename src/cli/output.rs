@@ -106,6 +106,14 @@ impl Failure {
         Failure::Files(format!("{}: {error}", path.display()))
     }
 
+    /// Returns the failure for a folder to write to that is a file.
+    pub(crate) fn unless_folder(path: &Path) -> Result<(), Self> {
+        match path.exists() && !path.is_dir() {
+            true => Err(Failure::Files(format!("{} is a file: give a folder", path.display()))),
+            false => Ok(()),
+        }
+    }
+
     /// Returns the failure for an error that [`fragbuf::source_file::read`] returns for `path`.
     pub(crate) fn source(path: &Path, error: &std::io::Error) -> Self {
         let file = path.display().to_string();
@@ -119,6 +127,16 @@ impl Failure {
     pub(crate) fn unknown(kind: &str, name: &str, known: &[&str]) -> Self {
         let nearest = nearest_name(name, known).map_or(String::new(), |nearest| format!("did you mean `{nearest}`? "));
         Failure::Usage(format!("no {kind} `{name}`: {nearest}give one of {}", known.join(", ")))
+    }
+
+    /// Returns what is wrong, without `error:` and without colours.
+    #[cfg(feature = "playground")]
+    pub(crate) fn message(&self) -> String {
+        match self {
+            Failure::Description(diagnostics, sources) => render(diagnostics, sources),
+            Failure::Usage(text) | Failure::Files(text) | Failure::Input(text) | Failure::Device(text) => text.clone(),
+            Failure::Model(warnings) => warnings.iter().map(|warning| format!("{warning}\n")).collect(),
+        }
     }
 
     /// Prints the failure on stderr and returns its exit code.

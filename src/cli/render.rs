@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use fragbuf::Registry;
+use fragbuf::vocabulary::Row;
 use fragbuf_frame::LaggedValues;
+use fragbuf_templates::SHOWN_LAYER;
 use serde_json::Value;
 
 use super::animated_image::AnimatedImage;
@@ -23,7 +25,7 @@ use super::watch::watch;
 #[derive(clap::Args)]
 #[command(after_help = scenes())]
 pub(crate) struct Render {
-    /// Technique key or .fragbuf file
+    /// Technique key, .fragbuf file, or `-` for a description on stdin
     description: String,
     /// Change the description: axis=value, axis.option=value or k=8
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
@@ -31,6 +33,10 @@ pub(crate) struct Render {
     /// Set a uniform of the description [default: 0]
     #[arg(long = "uniform", value_name = "NAME=VALUE[,VALUE]", value_parser = uniform)]
     uniforms: Vec<(String, String)>,
+    /// Show one layer alone: a fragment of each pixel, from 0 at the front, or with peeling what iteration N stores (the guide has the numbers
+    /// where an iteration has several slots). Sets `resolve=layer` and `resolve.number`
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=65_535))]
+    layer: Option<u32>,
     #[command(flatten)]
     view: View,
     /// Render again whenever the description, a user file that it names, a model or a file that a model names changes. Ctrl-C ends
@@ -89,24 +95,39 @@ impl Render {
         }
     }
 
+    /// Returns the changes of the description.
+    fn changes(&self, registry: &Registry) -> Vec<(String, String)> {
+        let shown = |row: &&Row| row.parameters.iter().any(|parameter| parameter.constant == SHOWN_LAYER);
+        let layer = self.layer.zip(registry.rows().iter().find(shown)).map(|(number, row)| {
+            let parameters = row.parameters.iter().filter(|parameter| parameter.constant == SHOWN_LAYER);
+            let numbers = parameters.map(|parameter| (format!("{}.{}", row.axis, parameter.name), number.to_string()));
+            std::iter::once((row.axis.clone(), row.key.clone())).chain(numbers).collect::<Vec<_>>()
+        });
+        layer.into_iter().flatten().chain(self.set.iter().cloned()).collect()
+    }
+
     /// Renders the next frame of a sequence, adds the files that it reads to `files`, and returns the statistics of the frame.
     fn frame(&self, view: &View, sequence: &mut Sequence, files: &mut Vec<PathBuf>) -> Result<Value, Failure> {
         let progress = Progress::new();
         progress.set_message(format!("loading {}", view.scene));
         let registry = Registry::builtin();
         let mut input = Input::read(&self.description, &registry)?;
-        let variant = input.variant(&self.set, &registry);
+        let set = self.changes(&registry);
+        let variant = input.variant(&set, &registry);
         files.extend_from_slice(input.files());
         let variant = variant?;
         // Before the scene is loaded and a device is selected.
         uniforms::values(&self.uniforms, &variant)?;
+        if !view.is_later_frame {
+            uniforms::warn_unset(&self.description, &self.uniforms, &variant);
+        }
         let (scene, opaque) = view.scene_views(&model_attributes(&[&variant], &view.attributes)?)?;
         files.extend(view.importance.clone());
         files.extend([Some(&scene), opaque.as_ref()].into_iter().flatten().flat_map(|view| view.scene.files.clone()));
         check_sources(&[&variant], &scene.scene, &view.attributes)?;
         let request = RenderRequest {
             description: &self.description,
-            set: &self.set,
+            set: &set,
             uniforms: &self.uniforms,
             count_all: view.json || self.animation.is_given(),
             opaque: opaque.as_ref(),

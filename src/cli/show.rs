@@ -10,7 +10,7 @@ use super::{page, targets};
 
 #[derive(clap::Args)]
 pub(crate) struct Show {
-    /// Technique key or .fragbuf file
+    /// Technique key, .fragbuf file, or `-` for a description on stdin
     description: String,
     /// Change the description: axis=value, axis.option=value or k=8
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]

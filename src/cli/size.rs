@@ -30,7 +30,11 @@ const BINDING: &str = "maxStorageBufferBindingSize";
 pub(crate) fn sizes(generation: &Generation, frame: FrameSize, is_json: bool) -> Result<String, Failure> {
     let found = generation.plans.iter().map(|planned| {
         let targets: Vec<&str> = planned.targets.iter().map(|target| target.name).collect();
-        Ok((targets, Sizes::of(planned, frame).map_err(|error| Failure::Input(error.to_string()))?))
+        Ok((
+            targets,
+            Sizes::of(planned, frame)
+                .map_err(|error| Failure::Input(format!("{error}: give a smaller `--size`, or fewer `--fragments`")))?,
+        ))
     });
     let found = found.collect::<Result<Vec<_>, Failure>>()?;
     Ok(match is_json {
@@ -52,7 +56,7 @@ impl<'a> Sizes<'a> {
     fn of(planned: &'a PlanForTargets, FrameSize { size, per_pixel }: FrameSize) -> Result<Self, Error> {
         let plan = &planned.plan;
         let pixels = u64::from(size.0) * u64::from(size.1);
-        let fragments = u32::try_from(pixels * u64::from(per_pixel)).unwrap_or(u32::MAX);
+        let fragments = u32::try_from(pixels.saturating_mul(per_pixel.into())).unwrap_or(u32::MAX);
         let (values, _) = initial_values(plan, size, Sizing::Reserve(PoolSize::Fragments(fragments)))?;
         let limits: Vec<(Limit, u64)> = limits(plan, 0, &planned.workgroups)
             .into_iter()

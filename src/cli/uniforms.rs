@@ -2,9 +2,9 @@
 
 use fragbuf::Variant;
 use fragbuf_frame::Value;
-use fragbuf_model::{UniformType, nearest_name};
+use fragbuf_model::{Diagnostic, Uniform, UniformType, codes, nearest_name};
 
-use super::output::Failure;
+use super::output::{self, Failure};
 
 /// Parses the values by the types that the description declares.
 pub(crate) fn values(given: &[(String, String)], variant: &Variant) -> Result<Vec<(String, Value)>, Failure> {
@@ -19,6 +19,34 @@ pub(crate) fn values(given: &[(String, String)], variant: &Variant) -> Result<Ve
             .ok_or_else(|| Failure::Usage(format!("uniform `{name}` takes {}, not `{text}`", expected(kind))))
     };
     given.iter().map(value).collect()
+}
+
+/// Warns of uniforms that the description reads and `given` does not set, with the options that set them.
+pub(crate) fn warn_unset(description: &str, given: &[(String, String)], variant: &Variant) {
+    let is_read = |uniform: &&Uniform| {
+        let is_unread =
+            |warning: &Diagnostic| warning.code == codes::UNUSED_UNIFORM && warning.span == uniform.name.span;
+        !variant.warnings.iter().any(is_unread)
+    };
+    let is_set = |uniform: &Uniform| given.iter().any(|(name, _)| *name == uniform.name.value);
+    let unset: Vec<&Uniform> = variant.uniforms.iter().filter(is_read).filter(|uniform| !is_set(uniform)).collect();
+    let option = |uniform: &&Uniform| {
+        let value = match uniform.kind.value {
+            UniformType::F32 | UniformType::U32 | UniformType::I32 => "NUMBER",
+            UniformType::Vec2 => "X,Y",
+            UniformType::Vec3 => "X,Y,Z",
+            UniformType::Vec4 => "X,Y,Z,W",
+        };
+        format!("--uniform {}={value}", uniform.name.value)
+    };
+    let options: Vec<String> = unset.iter().map(option).collect();
+    let names: Vec<String> = unset.iter().map(|uniform| format!("`{}`", uniform.name.value)).collect();
+    let what = match names.as_slice() {
+        [] => return,
+        [one] => format!("the uniform {one} has no value and is 0: set it with"),
+        several => format!("the uniforms {} have no values and are 0: set them with", several.join(", ")),
+    };
+    output::warn(&format!("{description}: {what} `{}`", options.join(" ")));
 }
 
 /// Returns the values for each of the descriptions that have the uniform. `Err`: none of them has it.

@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
 use fragbuf_cpu::FragmentOrder;
-use fragbuf_frame::Decisions;
+use fragbuf_frame::{Conditions, Decisions};
 use fragbuf_model::nearest_name;
 use fragbuf_scene::{AttributeRequest, BUILTIN_SCENES, Camera, Error, Limits, Scene};
 
@@ -37,7 +37,7 @@ pub(crate) struct View {
     pub(crate) out: PathBuf,
     /// `auto`: a three-quarter view of the whole scene. `orbit`: the whole scene from a direction in degrees: 0,0 is in front, 90,0 on
     /// the right, 0,90 above. `eye`: from a point of the model to its centre, or to `,target:X,Y,Z`. Both take the vertical field of
-    /// view as `,fov:DEGREES`, 40 by default. `clip`: positions are clip-space positions
+    /// view as `,fov:DEGREES`, 40 by default, and a magnification as `,zoom:FACTOR`. `clip`: positions are clip-space positions
     #[arg(long, default_value = "auto", value_name = "auto|clip|orbit:AZIMUTH,ELEVATION|eye:X,Y,Z")]
     pub(crate) camera: CameraRequest,
     /// Light the scene from the camera position, or use its colours unlit
@@ -64,6 +64,10 @@ pub(crate) struct View {
     /// keep the order of submission
     #[arg(long, value_name = "submission|shuffle:SEED|window:SEED,TRIANGLES", value_parser = device::order)]
     pub(crate) order: Option<FragmentOrder>,
+    /// Who ends a loop of peeling: the host, which waits for the device after every iteration, or the device, in a frame with all iterations
+    /// that the description allows, of which those after the end draw nothing
+    #[arg(long, value_enum, default_value_t = Loops::Host)]
+    pub(crate) loops: Loops,
     #[command(flatten)]
     pub(crate) arrangement: Arrangement,
     /// Memory budget for scenes, images and frames: bytes, or a number of KiB, MiB, GiB or TiB. A frame that needs more is drawn in
@@ -89,6 +93,22 @@ enum Shading {
     Lit,
     #[value(alias = "flat")]
     Unlit,
+}
+
+/// Who ends loops.
+#[derive(Clone, Copy, clap::ValueEnum)]
+pub(crate) enum Loops {
+    Host,
+    Device,
+}
+
+impl Loops {
+    pub(crate) fn conditions(self) -> Conditions {
+        match self {
+            Loops::Host => Conditions::OnHost,
+            Loops::Device => Conditions::OnDevice,
+        }
+    }
 }
 
 /// A scene with its final colours, and the camera that views it.
@@ -133,6 +153,7 @@ impl View {
             linear: false,
             device,
             order,
+            loops: Loops::Host,
             arrangement: Arrangement::default(),
             memory,
             strict: false,
@@ -171,6 +192,10 @@ impl View {
 
     /// Loads or generates a scene within the rest of a budget, and prints its warnings. An error has the whole budget as its limit.
     fn open(&self, name: &str, attributes: &[ModelAttribute], memory: Budget) -> Result<Scene, Failure> {
+        if name.trim().is_empty() {
+            let help = "give a model file, or a generated scene such as `builtin:cubes`";
+            return Err(Failure::Usage(format!("the name of a scene is empty: {help}")));
+        }
         let requests: Vec<AttributeRequest> = attributes.iter().map(|attribute| attribute.request.clone()).collect();
         let opened = fragbuf_scene::open_with(name, self.color, &requests, &Limits { memory: memory.left() });
         let mut scene = opened.map_err(|error| match error {
@@ -249,7 +274,8 @@ pub(crate) fn check_picture(path: &Path) -> Result<(), Failure> {
     }
 }
 
-fn check(scene: &str) -> Result<(), Failure> {
+/// Checks the name of a scene.
+pub(crate) fn check(scene: &str) -> Result<(), Failure> {
     let names: Vec<&str> = BUILTIN_SCENES.iter().map(|row| row.name).collect();
     // Parameters follow the name.
     let first = |text: &str| text.split(',').next().unwrap_or_default().to_owned();
@@ -272,6 +298,9 @@ fn check(scene: &str) -> Result<(), Failure> {
 
 /// Parses the path of a PNG.
 pub(crate) fn picture_path(text: &str) -> Result<PathBuf, String> {
+    if text.is_empty() {
+        return Err("the path is empty: give a file, such as image.png".to_owned());
+    }
     let path = PathBuf::from(text);
     let is_png = |extension: &std::ffi::OsStr| extension.eq_ignore_ascii_case("png");
     match path.extension() {

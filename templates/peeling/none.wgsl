@@ -20,4 +20,8 @@ fn peeling_transmittance() -> f32 {
     return 1.0;
 }
 
+fn peeling_layer(index: u32) -> u32 {
+    return index;
+}
+
 fn peeling_suspend(color: vec3<f32>, transmittance: f32) {}

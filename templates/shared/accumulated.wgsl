@@ -40,6 +40,10 @@ fn peeling_suspend(color: vec3<f32>, transmittance: f32) {
     accumulated_save(accumulated_slot, accumulated_pixel, composited);
 }
 
+fn peeling_layer(index: u32) -> u32 {
+    return frame.iteration * PEELING_SLOTS + accumulated_slot;
+}
+
 fn peeling_advance() {}
 
 fn peeling_result(pixel: u32) -> vec4<f32> {

@@ -11,6 +11,15 @@ pub enum CounterKind {
     Displaced,
     /// A fragment is missing from the image.
     Loss,
+    /// No fragment need be missing, but the image may differ from the described one.
+    Wrong,
+}
+
+impl CounterKind {
+    /// Whether the image is not as described if an event was counted. Manifests and headers call it `is_loss`.
+    pub fn makes_image_wrong(self) -> bool {
+        matches!(self, CounterKind::Loss | CounterKind::Wrong)
+    }
 }
 
 /// The counters in the order of their words: name, kind, meaning. `shared/counter_names.wgsl` has the same order.
@@ -33,8 +42,8 @@ pub const COUNTERS: [(&str, CounterKind, &str); 14] = [
     ("emitted", CounterKind::Event, "fragments that a stream composited in the store pass, not in the resolve pass"),
     (
         "out_of_order",
-        CounterKind::Event,
-        "emitted fragments that arrived after one behind them had been composited; counted like losses",
+        CounterKind::Wrong,
+        "emitted fragments that arrived after one behind them had been composited: the image is wrong; counted where losses are",
     ),
     ("pages_leaked", CounterKind::Event, "pages that a fragment took from the pool and did not use"),
     (
@@ -46,9 +55,9 @@ pub const COUNTERS: [(&str, CounterKind, &str); 14] = [
     ("occluded", CounterKind::Event, "fragments that meet the constraints and that an opaque surface hides"),
     (
         "partial_coverage",
-        CounterKind::Event,
+        CounterKind::Wrong,
         "fragments of stencil routing with partial coverage: their pixels may lose fragments or store them twice; \
-         counted like losses",
+         counted where losses are",
     ),
 ];
 

@@ -51,5 +51,6 @@ pub use d13_table_1::D13_TABLE_1;
 pub use paper_table::{Column, PaperRow, PaperTable, Property};
 pub use prediction::{BINS, BudgetTooSmall, Histogram, HitRatio, Prediction};
 pub use registry::Registry;
+pub use resolve::SHOWN_LAYER;
 pub use shorthand::Shorthand;
 pub use table_1::TABLE_1;

@@ -6,6 +6,10 @@ use crate::vocabulary::{Capability, Parameter, Row};
 /// The value that stands for the closure of the description.
 pub(crate) const CLOSURE: &str = "closure";
 
+/// The constant with the number of the layer that an effect shows alone. A row on the axis `resolve` with a parameter of this constant is such an
+/// effect.
+pub const SHOWN_LAYER: &str = "RESOLVE_LAYER";
+
 pub(crate) fn rows() -> Vec<Row> {
     vec![
         Row {
@@ -22,6 +26,26 @@ pub(crate) fn rows() -> Vec<Row> {
                 "thousandths of the light behind, and of a channel's error: blending stops when less passes; 0: never",
             )],
             ..Row::new("resolve", "over", "colours blended front to back", "Porter & Duff 1984; K15 §4.4")
+        },
+        Row {
+            template: Some(template!("resolve/layer")),
+            calls: vec!["samples", "peeling"],
+            provides: vec![Capability::Resumes],
+            requires: vec![Capability::Sorted],
+            conditions: vec![color(ADD_COLOR)],
+            parameters: vec![Parameter::number(
+                "number",
+                SHOWN_LAYER,
+                "0",
+                (0, 65_535),
+                "number of the layer, from 0; with peeling: of its iteration, times the slots of one, plus the slot",
+            )],
+            ..Row::new(
+                "resolve",
+                "layer",
+                "one layer alone: a fragment, or what peeling stores in one slot",
+                "D13 Fig. 4",
+            )
         },
         Row {
             template: Some(template!("resolve/stream")),

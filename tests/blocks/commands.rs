@@ -55,6 +55,8 @@ fn lines<'a>(block: &'a Block) -> Vec<Line<'a>> {
         let words: Vec<&str> = command.split_whitespace().collect();
         match words.as_slice() {
             ["fragbuf", subcommand, ..] if is_synopsis(&command) => has_options(block, subcommand, &command),
+            // It runs until it is ended: `playground_requests` starts it.
+            ["fragbuf", "playground", ..] => {}
             ["fragbuf", arguments @ ..] => lines.push(line(block, arguments)),
             ["cargo", "run", "--release", "--", arguments @ ..] => lines.push(line(block, arguments)),
             // The example runs in a test that includes it.
@@ -62,11 +64,47 @@ fn lines<'a>(block: &'a Block) -> Vec<Line<'a>> {
                 let tests = ["tests/examples.rs", "tests/material.rs"].map(read).concat();
                 assert!(tests.contains(&format!("#[path = \"../examples/{name}")), "no test runs `{command}`");
             }
+            // The test `program` of the host runs it with these options and shaders.
+            ["cargo", "run", "--release", "-p", "fragbuf-opengl-host", "--", arguments @ ..] => {
+                is_of_the_opengl_host(block, arguments);
+            }
+            // `c_header::the_example_follows_the_frame` compiles and runs it, with these options.
+            [
+                "cc",
+                "-std=c11",
+                "-Wall",
+                "-Wextra",
+                "-Werror",
+                "-pedantic",
+                "-I",
+                "passes",
+                "examples/c/frame.c",
+                "-o",
+                "frame",
+            ]
+            | ["./frame", "640", "480"] => assert!(block.file == "examples/c/README.md"),
+            // `program::the_guide_shows_what_the_program_draws` of the host runs it, with these options.
+            ["cargo", "run", "-p", "fragbuf-vulkan-host", "--", "passes", "panes.png", "--validate"] => {
+                assert!(block.is_in("vulkan.md"));
+            }
             [".ci/run"] => assert!(root().join(".ci/run").exists()),
             _ => block.fail(&format!("no test for `{command}`")),
         }
     }
     lines
+}
+
+/// Checks that the program has the options, and that its test uses the files of the examples.
+fn is_of_the_opengl_host(block: &Block, arguments: &[&str]) {
+    let (program, test) = ("src/main.rs", "tests/program.rs");
+    let [program, test] = [program, test].map(|path| read(&format!("backends/run/opengl/{path}")));
+    for argument in arguments {
+        let is_known = match argument.strip_prefix("examples/opengl/") {
+            Some(file) => test.contains(file),
+            None => !argument.starts_with("--") || program.contains(&format!("[{argument}")),
+        };
+        assert!(is_known, "{}:{}: the program has no `{argument}`", block.file, block.line);
+    }
 }
 
 /// Returns the commands of a text without comments. An indented line continues a command.
@@ -120,7 +158,7 @@ fn run_line(line: &Line<'_>, folder: PathBuf) {
                 chapter.split("let text = \"").nth(1).unwrap().split("\";").next().unwrap().to_owned()
             }
             "model.obj" => MODEL.to_owned(),
-            path if path.starts_with("examples/") => read(path),
+            path if path.starts_with("examples/") && root().join(path).is_file() => read(path),
             _ => continue,
         };
         let path = folder.join(word);

@@ -79,6 +79,9 @@ fn every_block_of_a_known_kind_is_right() {
             // A diagram.
             "text" if block.text.contains("─►") => {}
             "sh" => commands.push(block),
+            "js" => is_a_part_of_the_example(block),
+            "glsl" => is_a_material(block),
+            "ignore" => is_a_part_of_a_host(block),
             _ => block.fail("no test for a block of this kind"),
         }
     }
@@ -92,7 +95,7 @@ fn every_block_of_a_known_kind_is_right() {
 /// `messages::every_code_is_explained` compiles the first example of a section, so there is no second one.
 #[test]
 fn a_code_has_one_example() {
-    for file in ["codes.md", "model_warnings.md"] {
+    for file in ["codes.md", "model_warnings.md", "counters.md"] {
         let text = read(&format!("src/guide/{file}"));
         for section in text.split("\n## ").skip(1) {
             assert!(section.matches("\n```").count() <= 2, "{file}: two examples:\n{section}");
@@ -162,6 +165,35 @@ fn is_code_that_runs(block: &Block) {
     let code: String = code.lines().map(|line| format!("{}\n", line.trim())).collect();
     if !code.contains(block.shown().trim_start_matches("// build.rs\n")) {
         block.fail("not a part of the code that runs");
+    }
+}
+
+/// A material in GLSL is a file of the example, with which the test `program` of the OpenGL host draws.
+fn is_a_material(block: &Block) {
+    let files = ["pane.vert.glsl", "pane.frag.glsl"].map(|name| read(&format!("examples/opengl/{name}")));
+    if !files.contains(&block.text) {
+        block.fail("no file of the example has this text");
+    }
+}
+
+/// A script is a part of the example for browsers, which `browser` runs on Dawn and in Chromium.
+fn is_a_part_of_the_example(block: &Block) {
+    let files = ["examples/web/knot.mjs", "examples/web/index.html"];
+    if !files.iter().any(|file| read(file).contains(&block.text)) {
+        block.fail("not a part of the example");
+    }
+}
+
+/// A part of a crate is in a file of the host that the chapter is about, or of what hosts share.
+fn is_a_part_of_a_host(block: &Block) {
+    let Some(host) = ["opengl", "vulkan"].into_iter().find(|host| block.is_in(&format!("{host}.md"))) else {
+        block.fail("only chapters about hosts show parts of a crate")
+    };
+    let folders = [host, "follow"].map(|folder| root().join(format!("backends/run/{folder}/src")));
+    let files = folders.iter().flat_map(|folder| std::fs::read_dir(folder).unwrap()).map(|file| file.unwrap().path());
+    let mut texts = files.filter(|path| path.is_file()).map(|path| std::fs::read_to_string(path).unwrap());
+    if !texts.any(|text| text.contains(&block.text)) {
+        block.fail("not a part of the host");
     }
 }
 

@@ -1,6 +1,6 @@
 //! Tests the reference implementation of fragment buffers by its properties. Pixel tests compare devices with it.
 
-mod reference;
+pub mod reference;
 
 pub use reference::{depth_key, ordered_key, rgba8};
 

@@ -187,6 +187,20 @@ impl Format {
         }
     }
 
+    /// Returns what it stores.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Format::F32 => "a float",
+            Format::U32 => "an unsigned integer",
+            Format::Vec2 => "two floats",
+            Format::Vec3 => "three floats",
+            Format::Vec4 => "four floats",
+            Format::Rgba8 => "four channels of 8 bits in [0, 1], rounded to nearest (error ≤ 1/510)",
+            Format::Rgba16 => "four channels of 16 bits in [0, 1], rounded to nearest (error ≤ 1/131,070)",
+            Format::Octahedral => "a unit vector as two 16-bit octahedral coordinates (Cigolle et al. 2014)",
+        }
+    }
+
     /// Returns the number of 32-bit words in memory.
     pub fn words(self) -> u32 {
         match self {
@@ -249,6 +263,16 @@ impl UniformType {
             UniformType::Vec2 => "vec2",
             UniformType::Vec3 => "vec3",
             UniformType::Vec4 => "vec4",
+        }
+    }
+
+    /// Returns the number of its components.
+    pub fn components(self) -> u32 {
+        match self {
+            UniformType::F32 | UniformType::U32 | UniformType::I32 => 1,
+            UniformType::Vec2 => 2,
+            UniformType::Vec3 => 3,
+            UniformType::Vec4 => 4,
         }
     }
 

@@ -5,6 +5,8 @@
 
 use std::f32::consts;
 
+use crate::types::Type;
+
 /// The value of a constant.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Constant {
@@ -15,6 +17,19 @@ pub(crate) enum Constant {
     Splat(u8, f32),
     /// A unit vector: size, index of the component, and its value.
     Axis(u8, u8, f32),
+}
+
+impl Constant {
+    /// Returns the type in Rust.
+    pub(crate) fn rust(&self) -> &'static str {
+        match self {
+            Constant::Float(_) => Type::F32,
+            Constant::U32(_) => Type::U32,
+            Constant::I32(_) => Type::I32,
+            Constant::Splat(size, _) | Constant::Axis(size, ..) => Type::Vector(*size),
+        }
+        .rust()
+    }
 }
 
 /// Returns the constant of a path without `std` or `core`.

@@ -54,14 +54,18 @@ pub fn parse_tokens(tokens: TokenStream, locate: &dyn Fn(Span) -> SourceSpan) ->
 /// Parses the tokens of a description, and returns the tokens of each function too, including those that the draft omits.
 pub fn read_tokens(tokens: TokenStream, locate: &dyn Fn(Span) -> SourceSpan) -> (Parsed, Vec<FunctionTokens>) {
     let mut report = Report::new(locate);
-    let description =
-        token_limits::bounded(tokens, &mut report).and_then(|tokens| grammar::description(tokens, &mut report));
-    let (draft, functions) = match description {
+    let (draft, functions) = read(tokens, &mut report);
+    (Parsed { draft, diagnostics: report.finish() }, functions)
+}
+
+/// Parses the tokens of a description: the draft, and the tokens of each function.
+pub(crate) fn read(tokens: TokenStream, report: &mut Report) -> (Option<Draft>, Vec<FunctionTokens>) {
+    let description = token_limits::bounded(tokens, report).and_then(|tokens| grammar::description(tokens, report));
+    match description {
         Some(mut description) => {
             let functions = std::mem::take(&mut description.items.function_tokens);
-            (Some(draft::build(description, &mut report)), functions)
+            (Some(draft::build(description, report)), functions)
         }
         None => (None, Vec::new()),
-    };
-    (Parsed { draft, diagnostics: report.finish() }, functions)
+    }
 }

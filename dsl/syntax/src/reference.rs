@@ -24,10 +24,15 @@ pub fn reference() -> String {
     markdown
 }
 
+/// Returns the Rust type of an attribute in closures.
+pub fn type_of_attribute(format: Format) -> &'static str {
+    Type::of_attribute(format).rust()
+}
+
 fn types(markdown: &mut String) {
     markdown.push_str("\n# Types\n\n| attribute | words | type in a closure |\n|---|---|---|\n");
     for format in Format::ALL {
-        let ty = Type::of_attribute(format).rust();
+        let ty = type_of_attribute(format);
         let _ = writeln!(markdown, "| `{}` | {} | `{ty}` |", format.keyword(), format.words());
     }
     let uniforms: Vec<String> = UniformType::ALL.iter().map(|ty| format!("`{}`", ty.keyword())).collect();

@@ -3,6 +3,8 @@
 use fragbuf_model::{Code, Diagnostic, Diagnostics, SourceSpan};
 use proc_macro2::Span;
 
+use crate::inspection::{Candidate, Name};
+
 /// The greatest number of errors that are kept. A reader needs no more.
 const MAX_ERRORS: usize = 200;
 
@@ -17,12 +19,46 @@ pub(crate) struct Report<'a> {
     locate: &'a dyn Fn(Span) -> SourceSpan,
     diagnostics: Diagnostics,
     count: usize,
+    /// The names in functions, and what can be in the place of the placeholder. `None`: they are not collected.
+    names: Option<(Vec<Name>, Vec<Candidate>)>,
 }
 
 impl<'a> Report<'a> {
     /// Returns an empty report.
     pub(crate) fn new(locate: &'a dyn Fn(Span) -> SourceSpan) -> Self {
-        Report { locate, diagnostics: Diagnostics::new(), count: 0 }
+        Report { locate, diagnostics: Diagnostics::new(), count: 0, names: None }
+    }
+
+    /// Collects the names in functions, too.
+    pub(crate) fn with_names(mut self) -> Self {
+        self.names = Some((Vec::new(), Vec::new()));
+        self
+    }
+
+    /// Returns whether names are collected.
+    pub(crate) fn has_names(&self) -> bool {
+        self.names.is_some()
+    }
+
+    /// Adds a name, if names are collected.
+    pub(crate) fn name(&mut self, name: Name) {
+        if let Some((names, _)) = &mut self.names {
+            names.push(name);
+        }
+    }
+
+    /// Sets what can be in the place of the placeholder, which is written once. A function may be checked after its signature.
+    pub(crate) fn candidates(&mut self, found: impl IntoIterator<Item = Candidate>) {
+        if let Some((_, candidates)) = &mut self.names
+            && candidates.is_empty()
+        {
+            candidates.extend(found);
+        }
+    }
+
+    /// Takes the names and the candidates.
+    pub(crate) fn take_names(&mut self) -> (Vec<Name>, Vec<Candidate>) {
+        self.names.take().unwrap_or_default()
     }
 
     /// Returns the position of a token span in the user's source.

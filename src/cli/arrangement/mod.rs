@@ -73,7 +73,7 @@ impl Arrangement {
 pub(crate) fn print(view: &SceneView) {
     if let Some(Disorder { before, after }) = view.disorder {
         output::note(&format!(
-            "disorder: {before} in the order of the model, {after} as arranged; a fragment is so many places away from its order by depth at most"
+            "disorder: {before} in the order of the model, {after} as arranged; it is the greatest number of places between where a fragment of a pixel arrives and where its depth belongs"
         ));
     }
 }

@@ -33,16 +33,7 @@ struct PixelCoplanarity {
 }
 
 /// The frame that counts.
-const REQUEST: RenderRequest<'static> = RenderRequest {
-    description: "coplanarity",
-    set: &[],
-    uniforms: &[],
-    count_all: true,
-    opaque: None,
-    held: 0,
-    lagged: None,
-    words: &[],
-};
+const REQUEST: RenderRequest<'static> = RenderRequest { count_all: true, ..RenderRequest::new("coplanarity") };
 
 fn input() -> Input {
     Input::text(REQUEST.description, include_str!("coplanarity.fragbuf"))

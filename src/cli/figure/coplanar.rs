@@ -72,16 +72,7 @@ pub(super) fn kept(technique: &str, (view, scene): (&View, &SceneView), run: &mu
     let mut view = view.clone();
     view.attributes = vec![("color".to_owned(), format!("1,1,1,{ALPHA}"))];
     let mut input = Input::read(technique, &Registry::builtin())?;
-    let request = RenderRequest {
-        description: technique,
-        set: &[],
-        uniforms: &[],
-        count_all: false,
-        opaque: None,
-        held: 0,
-        lagged: None,
-        words: &[],
-    };
+    let request = RenderRequest::new(technique);
     let result = render_quietly(&request, &mut input, (&view, &mut run.selection), scene, &run.silent)?;
     Ok(result.stats.pixels.iter().map(|[_, _, _, alpha]| blended(f64::from(*alpha))).sum())
 }

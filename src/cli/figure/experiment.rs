@@ -263,7 +263,18 @@ pub(super) struct Images {
     pub(super) order: FragmentOrder,
     /// The first is the reference.
     pub(super) variants: &'static [Variant],
+    /// What the sheet shows of the others.
+    pub(super) shown: Shown,
     pub(super) claims: &'static [ImageClaim],
+}
+
+/// What a sheet of images shows beside the reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Shown {
+    /// Where an image differs, as a heat map.
+    Differences,
+    /// The image itself.
+    Images,
 }
 
 /// A description, and the order of the triangles that it renders.
@@ -300,6 +311,8 @@ pub(super) enum Expected {
     Different,
     /// In fewer pixels than the image of another variant.
     FewerThan(&'static str),
+    /// The image equals that of another variant.
+    Same(&'static str),
 }
 
 /// Properties of techniques.

@@ -10,7 +10,7 @@ use fragbuf_scene::DepthOrder;
 use super::Figure;
 use super::claim::{Finding, sentence};
 use super::csv::{self, Row};
-use super::experiment::{Expected, Experiment, ImageClaim, Images, Triangles, Variant};
+use super::experiment::{Expected, Experiment, ImageClaim, Images, Shown, Triangles, Variant};
 use super::run::{QUICK_SIDE, Run, changes, description, unavailable};
 use super::svg::{Anchor, Svg};
 use crate::cli::compare::Difference;
@@ -79,7 +79,8 @@ pub(super) fn run(images: &Images, options: &Figure, experiment: &Experiment) ->
     }
     let rows: Vec<Row> = rendered.iter().map(|(variant, image)| row(variant, image)).collect();
     csv::write(&run.file("csv"), &run.header, &COLUMNS, &rows)?;
-    csv::write_text(&run.file("svg"), &sheet(experiment, side, &rendered, &run.selection.name())?)?;
+    let sheet = sheet((experiment, images), side, &rendered, &run.selection.name())?;
+    csv::write_text(&run.file("svg"), &sheet)?;
     let findings: Vec<(&str, Finding)> =
         images.claims.iter().map(|claim| (claim.statement, finding(claim, &rendered))).collect();
     Ok(sentence(experiment.paper, &run.selection.name(), &findings))
@@ -103,16 +104,7 @@ fn draw(
     let set = changes(&variant.series, 0);
     let mut input = Input::read(variant.series.technique, &registry)?;
     let description = variant.series.technique;
-    let request = RenderRequest {
-        description,
-        set: &set,
-        uniforms: &[],
-        count_all: true,
-        opaque: None,
-        held: 0,
-        lagged: None,
-        words: &[],
-    };
+    let request = RenderRequest { set: &set, count_all: true, ..RenderRequest::new(description) };
     let result = match render_quietly(&request, &mut input, (view, &mut run.selection), scene, &run.silent) {
         Ok(result) => result,
         Err(failure) => return unavailable(failure).map(Err),
@@ -151,9 +143,9 @@ fn row(variant: &Variant, image: &Result<Rendered, String>) -> Row {
     start.into_iter().chain(numbers).collect()
 }
 
-/// Returns the SVG: the reference, then a heat map of each other variant.
+/// Returns the SVG: the reference, then a heat map or the image of each other variant.
 fn sheet(
-    experiment: &Experiment,
+    (experiment, images): (&Experiment, &Images),
     side: u32,
     rendered: &[(Variant, Result<Rendered, String>)],
     device: &str,
@@ -167,10 +159,13 @@ fn sheet(
     let title = format!("{}: {}", experiment.paper, experiment.title);
     svg.text([GAP, 26], (17, "#000000", Anchor::Start), &title);
     let third = greatest / 3.0;
-    let scale = format!(
-        "{device}; difference from the first image: black 0, red {third:.2}, yellow {:.2}, white {greatest:.2}",
-        2.0 * third
-    );
+    let scale = match images.shown {
+        Shown::Differences => format!(
+            "{device}; difference from the first image: black 0, red {third:.2}, yellow {:.2}, white {greatest:.2}",
+            2.0 * third
+        ),
+        Shown::Images => device.to_owned(),
+    };
     svg.text([GAP, 46], (12, "#5f5f5f", Anchor::Start), &scale);
     for (number, (variant, image)) in (0_u32..).zip(rendered) {
         let x = GAP + number % COLUMNS_OF_PANELS * (PANEL + GAP);
@@ -178,14 +173,16 @@ fn sheet(
         svg.text([x, y + 16], (13, "#000000", Anchor::Start), variant.series.label);
         match image {
             Ok(image) => {
-                let png = match number {
-                    0 => picture::bytes((side, side), &mut image.pixels.iter().copied(), false)?,
-                    _ => picture::bytes((side, side), &mut image.difference.heat_up_to(greatest), true)?,
+                let is_map = number > 0 && images.shown == Shown::Differences;
+                let png = match is_map {
+                    false => picture::bytes((side, side), &mut image.pixels.iter().copied(), false)?,
+                    true => picture::bytes((side, side), &mut image.difference.heat_up_to(greatest), true)?,
                 };
                 svg.image([x, y + 38, PANEL, PANEL], &png);
-                let below = match number {
-                    0 => "reference".to_owned(),
-                    _ => differing(image),
+                let below = match (number, images.shown) {
+                    (0, _) => "reference".to_owned(),
+                    (_, Shown::Differences) => differing(image),
+                    (_, Shown::Images) => description(&variant.series, 0),
                 };
                 svg.text([x, y + 32], (12, "#5f5f5f", Anchor::Start), &below);
             }
@@ -214,6 +211,12 @@ fn finding(claim: &ImageClaim, rendered: &[(Variant, Result<Rendered, String>)])
             let other = image(other)?;
             let text = format!("{} instead of {} pixels differ", found.difference.count, other.difference.count);
             Ok((found.difference.count < other.difference.count, text))
+        }
+        Expected::Same(other) => {
+            let other = image(other)?;
+            let pairs = found.pixels.iter().copied().zip(other.pixels.iter().copied());
+            let count = Difference::of(pairs).count;
+            Ok((count == 0, format!("{count} of {} pixels differ", found.pixels.len())))
         }
     });
     match found {
@@ -249,6 +252,8 @@ mod tests {
         assert_eq!(check("none", Expected::Different), differs("0 of 4 pixels differ"));
         assert_eq!(check("few", Expected::FewerThan("many")), agrees("1 instead of 3 pixels differ"));
         assert_eq!(check("many", Expected::FewerThan("few")), differs("3 instead of 1 pixels differ"));
+        assert_eq!(check("few", Expected::Same("few")), agrees("0 of 4 pixels differ"));
+        assert_eq!(check("few", Expected::Same("many")), differs("2 of 4 pixels differ"));
         assert_eq!(check("few", Expected::FewerThan("other")), Finding::Missing("no variant other".to_owned()));
     }
 }

@@ -99,16 +99,7 @@ fn frame(
     run: &mut Run<'_>,
 ) -> Result<Frame, Failure> {
     let mut input = Input::read(technique, &Registry::builtin())?;
-    let request = RenderRequest {
-        description: technique,
-        set: &[],
-        uniforms: &[],
-        count_all: true,
-        opaque: None,
-        held: 0,
-        lagged: None,
-        words: &[],
-    };
+    let request = RenderRequest { count_all: true, ..RenderRequest::new(technique) };
     let result = render_quietly(&request, &mut input, (view, &mut run.selection), scene, &run.silent)?;
     let hit_ratio = match FragmentCounts::of(&result) {
         Some(counts) => counts.hit_ratio,

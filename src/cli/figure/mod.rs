@@ -75,6 +75,7 @@ impl Figure {
         let found = EXPERIMENTS.iter().find(|experiment| experiment.name == name);
         let names: Vec<&str> = EXPERIMENTS.iter().map(|experiment| experiment.name).collect();
         let experiment = found.ok_or_else(|| Failure::unknown("experiment", name, &names))?;
+        Failure::unless_folder(&self.out)?;
         let text = match &experiment.kind {
             Kind::Sweep(sweep) => self.sweep(experiment, sweep)?,
             Kind::Images(images) => images::run(images, self, experiment)?,

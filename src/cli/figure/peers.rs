@@ -74,6 +74,9 @@ pub(super) fn run(peers: &Peers, options: &Figure, experiment: &Experiment) -> R
         )));
     };
     let device_name = Context::surfaceless().map_err(device)?.name.clone();
+    if !folder.is_dir() {
+        return Err(Failure::Files(format!("{} is not a folder: give a checkout to `--peer`", folder.display())));
+    }
     let side = options.size.unwrap_or(if options.quick { QUICK_SIDE } else { peers.side });
     let progress = Progress::new();
     let (mut points, count) =
@@ -174,7 +177,7 @@ fn run_both(
     };
     let mut peer = Peer::new(context, description, &theirs, [side, side])?;
     let mut host = Host::new(context, &manifest(generation, 0).to_string(), &ours, [side, side])?;
-    host.set_symbol("fragments", u64::from(side) * u64::from(side) * CAPACITY);
+    host.set_symbol("fragments", u64::from(side) * u64::from(side) * CAPACITY)?;
     // Both sides read a position and a colour per vertex.
     compare(context, (&mut host, scene), (&mut peer, scene), repeats)
 }

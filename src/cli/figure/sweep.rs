@@ -223,16 +223,7 @@ impl Prepared {
         if let Some(missing) = run.selection.missing(&variant, &registry) {
             return Ok(Err(missing));
         }
-        let request = RenderRequest {
-            description: series.technique,
-            set: &set,
-            uniforms: &[],
-            count_all: false,
-            opaque: None,
-            held: 0,
-            lagged: None,
-            words: &[],
-        };
+        let request = RenderRequest { set: &set, ..RenderRequest::new(series.technique) };
         match prepare(&request, &mut input, (view, &mut run.selection), scene, &run.silent) {
             Ok((mut result, frame)) => {
                 result.stats.pixels = Vec::new();

@@ -30,7 +30,7 @@ use super::view::{self, SceneView, View, picture_path, scenes};
 #[derive(clap::Args)]
 #[command(after_help = scenes())]
 pub(crate) struct Predict {
-    /// Technique key or .fragbuf file, with k slots per pixel or with exact regions
+    /// Technique key, .fragbuf file, or `-` for a description on stdin, with k slots per pixel or exact regions
     description: String,
     /// Change the description: axis=value or axis.option=value. k and `allocation` are those that this command chooses
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
@@ -94,6 +94,8 @@ impl Predict {
         if let Some(Some(path)) = &self.coplanarity {
             check_map(path)?;
         }
+        #[cfg(feature = "figures")]
+        self.plot.as_deref().map_or(Ok(()), view::check_picture)?;
         let (histogram, scene) = count(changed, &view, &mut input, &registry, &self.uniforms)?;
         if !self.json {
             arrangement::print(&scene);

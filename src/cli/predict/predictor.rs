@@ -76,23 +76,15 @@ pub(crate) fn count(
     registry: &Registry,
     uniforms: &[(String, String)],
 ) -> Result<(Histogram, SceneView), Failure> {
-    let (set, variant) = with_histogram((description, &with_k(set, 1)), input, registry)?;
+    let (set, variant) = with_histogram((description, set), input, registry)?;
     let progress = Progress::new();
     progress.set_message(format!("loading {}", view.scene));
     uniforms::values(uniforms, &variant)?;
+    uniforms::warn_unset(description, uniforms, &variant);
     let (scene, _) = view.scene_views(&model_attributes(&[&variant], &view.attributes)?)?;
     check_sources(&[&variant], &scene.scene, &view.attributes)?;
     let words = &["histogram"];
-    let request = RenderRequest {
-        description,
-        set: &set,
-        uniforms,
-        count_all: false,
-        opaque: None,
-        held: 0,
-        lagged: None,
-        words,
-    };
+    let request = RenderRequest { set: &set, uniforms, words, ..RenderRequest::new(description) };
     let mut selection = select(view, &scene, &mut [(&request, input)])?;
     let result = render_quietly(&request, input, (view, &mut selection), &scene, &progress)?;
     if result.stats.slices > 1 {
@@ -108,7 +100,7 @@ fn with_k(set: &[(String, String)], k: u32) -> Vec<(String, String)> {
     [set, &[("k".to_owned(), k.to_string())]].concat()
 }
 
-/// Adds the first row of `allocation` with a budget that the description can have.
+/// Chooses k = 1, and the first row of `allocation` with a budget that the description can have.
 fn with_histogram(
     (description, set): Changed<'_>,
     input: &mut Input,
@@ -120,12 +112,13 @@ fn with_histogram(
     for row in rows() {
         let added = [("allocation", row.key.as_str()), ("allocation.budget", GREATEST_BUDGET)];
         let added = added.map(|(name, value)| (name.to_owned(), value.to_owned()));
-        let set = [set, &added].concat();
+        let set = [with_k(set, 1).as_slice(), &added].concat();
         if let Ok(variant) = input.variant(&set, registry) {
             return Ok((set, variant));
         }
     }
-    // The description itself is valid: its storage is of another kind.
+    // A failure of the description itself has its own message.
+    let variant = input.variant(set, registry)?;
     let span = SourceSpan::new(description, 1, 1);
     let is_predictable = |technique: &&Technique| {
         rows().any(|row| {
@@ -139,9 +132,21 @@ fn with_histogram(
     let techniques: Vec<&str> =
         registry.techniques().iter().filter(is_predictable).map(|technique| technique.key.as_str()).collect();
     Err(Failure::Input(format!(
-        "{description}: its memory does not follow k. `predict` takes storages with k slots per pixel, or exact regions that are limited to k: {}",
+        "{description}: {}. `predict` takes storages that keep min(f, k) of the f fragments of a pixel, in k slots per pixel or in exact regions: {}",
+        reason(&variant),
         techniques.join(", ")
     )))
+}
+
+/// Returns why no k of a description follows from the numbers of fragments.
+fn reason(variant: &Variant) -> String {
+    if variant.keep.is_none() {
+        return "it keeps every fragment, so it has no k".to_owned();
+    }
+    let storage =
+        variant.choices.iter().filter(|chosen| chosen.axis == "storage").flat_map(|chosen| &chosen.alternatives);
+    let keys: Vec<String> = storage.map(|selected| format!("`storage: {}`", selected.row.key)).collect();
+    format!("what {} keeps and its memory do not follow from k and the numbers of fragments alone", keys.join(" or "))
 }
 
 /// The greatest budget of a description, in MiB: the frame that counts keeps one fragment per pixel anyway.

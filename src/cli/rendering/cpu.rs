@@ -66,9 +66,15 @@ pub(super) fn render(
     loop {
         let sizing =
             redraw.pool_size.map_or(Sizing::Auto, |fragments| Sizing::Capacity(PoolSize::Fragments(fragments)));
-        let decisions = view.decisions;
-        let settings =
-            Settings { sizing, decisions, order, slice: redraw.slice, memory, ..Settings::new(width, height) };
+        let settings = Settings {
+            sizing,
+            decisions: view.decisions,
+            conditions: view.loops.conditions(),
+            order,
+            slice: redraw.slice,
+            memory,
+            ..Settings::new(width, height)
+        };
         let mut device = match Device::new(code.clone(), settings) {
             // The pool for all fragments of a slice is too large.
             Err(error) if is_too_large(&error) && redraw.halve() => continue,

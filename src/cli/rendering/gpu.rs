@@ -116,7 +116,7 @@ impl GpuFrame {
         };
         let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
         FrameTime::measure(|| {
-            renderer.render(&output, &mut |pass, call| mesh.draw(pass, call.objects))?;
+            renderer.render(&output, &mut |pass, call| mesh.draw(pass, call))?;
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             let times = renderer.pass_times(&mut encoder);
             queue.submit([encoder.finish()]);
@@ -171,6 +171,7 @@ impl GpuRenderer {
         let settings = Settings {
             memory,
             decisions: view.decisions,
+            conditions: view.loops.conditions(),
             timestamps: view.json,
             interlock: self.headless.interlock,
             ..Settings::new(BLENDED, width, height)
@@ -204,6 +205,7 @@ impl GpuRenderer {
             if renderer.plan().passes.iter().any(|pass| pass.objects == Objects::Boxes) {
                 block_on(device, renderer.set_objects(mesh.boxes()))??;
             }
+            block_on(device, renderer.set_draws(mesh.draws()))??;
             redraw.frames += 1;
             let (frame, slices) = (redraw.frames, renderer.slices());
             progress.set_message(format!("{}: frame {frame}, slices: {slices}", request.description));
@@ -248,6 +250,7 @@ impl GpuRenderer {
         // In one slice: the next slice would clear the depth buffer of the former one.
         let settings = Settings { memory, slice: Some(height), ..Settings::new(BLENDED, width, height) };
         let mut renderer = block_on(device, Renderer::new(device, queue, &shaders, &settings))??;
+        block_on(device, renderer.set_draws(mesh.draws()))??;
         match self.frame(&mut renderer, opaque.scene, &mesh, (task.view.size, &[]))? {
             FrameOutcome::Complete(FrameStats { pixels, .. }) => {
                 let depths = renderer.texture(&depth_texture(&shaders.plan)?).cloned();
@@ -274,10 +277,11 @@ impl GpuRenderer {
         let offscreen = Offscreen::new(device, BLENDED, width, height)?;
         let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
         let is_lagged = renderer.is_lagged();
-        let loops = renderer.render(&output, &mut |pass, call| mesh.draw(pass, call.objects))?;
+        let loops = renderer.render(&output, &mut |pass, call| mesh.draw(pass, call))?;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let (counters, by_slice) = (renderer.counters(&mut encoder), renderer.slice_counters(&mut encoder));
         let times = renderer.pass_times(&mut encoder);
+        let reports = renderer.loop_reports(&mut encoder);
         let words: Vec<_> = words.iter().map(|name| renderer.words(name, &mut encoder)).collect();
         queue.submit([encoder.finish()]);
         let words = words.into_iter().map(|pending| pending.map_or(Ok(Vec::new()), |pending| pending.wait(device)));
@@ -285,6 +289,7 @@ impl GpuRenderer {
         let counters = counters.map(|pending| pending.wait(device)).transpose()?;
         let by_slice = by_slice.map(|pending| pending.wait(device)).transpose()?;
         let times = times.map(|pending| pending.wait(device)).transpose()?;
+        let loops = reports.map_or(Ok(loops), |pending| pending.wait(device))?;
         let overflow = by_slice.iter().flatten().map(|slice| slice.get(POOL_EXHAUSTED)).max().unwrap_or(0);
         if overflow > 0 {
             // Every fragment that did not fit was counted, so the count gives the size of the next pool.

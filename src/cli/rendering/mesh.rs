@@ -6,7 +6,7 @@ use std::num::NonZeroU32;
 use std::ops::Range;
 
 use fragbuf_frame::box_around;
-use fragbuf_runtime::{ObjectBox, wgpu};
+use fragbuf_runtime::{Call, DrawArguments, ObjectBox, SceneDraw, wgpu};
 
 use crate::cli::attributes::Geometry;
 use crate::cli::output::Failure;
@@ -15,11 +15,8 @@ use crate::cli::output::Failure;
 pub(super) struct Mesh {
     vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
-    count: u32,
-    /// The indices of a draw.
-    batch: u32,
-    /// The indices of each object, and the box around it.
-    objects: Vec<Range<u32>>,
+    draws: Vec<SceneDraw>,
+    /// The box around each object.
     boxes: Vec<ObjectBox>,
 }
 
@@ -52,37 +49,53 @@ impl Mesh {
         Ok(Mesh {
             vertices: buffer("vertices", &geometry.vertices, wgpu::BufferUsages::VERTEX)?,
             indices: buffer("indices", &geometry.indices, wgpu::BufferUsages::INDEX)?,
-            count: geometry.indices.len() as u32,
-            batch: batch.map_or(u32::MAX, |triangles| triangles.get().saturating_mul(3)),
+            draws: draws(geometry, batch.map_or(u32::MAX, |triangles| triangles.get().saturating_mul(3))),
             boxes: geometry.objects.iter().map(|object| box_of(geometry, object)).collect(),
-            objects: geometry.objects.clone(),
         })
     }
 
-    /// Draws the objects of these numbers; `None`: all.
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, objects: Option<&[u32]>) {
+    /// Draws the objects that the call asks for.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, call: &Call<'_>) {
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
-        let visible = objects.filter(|_| !self.objects.is_empty());
-        let Some(visible) = visible else { return self.draw_range(pass, 0..self.count) };
-        for range in visible.iter().filter_map(|number| self.objects.get(*number as usize)) {
-            self.draw_range(pass, range.clone());
+        for number in 0..self.draws.len() {
+            // The renderer has these draws.
+            call.draw(pass, number).ok();
         }
     }
 
-    fn draw_range(&self, pass: &mut wgpu::RenderPass<'_>, range: Range<u32>) {
-        let mut begin = range.start;
-        while begin < range.end {
-            let end = begin.saturating_add(self.batch).min(range.end);
-            pass.draw_indexed(begin..end, 0, 0..1);
-            begin = end;
-        }
+    /// Returns the draws of the scene.
+    pub(super) fn draws(&self) -> &[SceneDraw] {
+        &self.draws
     }
 
     /// Returns the boxes of the objects, in the order of their numbers.
     pub(super) fn boxes(&self) -> &[ObjectBox] {
         &self.boxes
     }
+}
+
+/// Returns the draws of all objects, each of at most `batch` indices. A scene without objects is one.
+fn draws(geometry: &Geometry, batch: u32) -> Vec<SceneDraw> {
+    let whole = 0..geometry.indices.len() as u32;
+    let objects = if geometry.objects.is_empty() { std::slice::from_ref(&whole) } else { &geometry.objects };
+    let mut draws = Vec::new();
+    for (object, range) in (0..).zip(objects) {
+        let mut first_index = range.start;
+        while first_index < range.end {
+            let end = first_index.saturating_add(batch).min(range.end);
+            let arguments = wgpu::util::DrawIndexedIndirectArgs {
+                index_count: end - first_index,
+                instance_count: 1,
+                first_index,
+                base_vertex: 0,
+                first_instance: 0,
+            };
+            draws.push(SceneDraw { object, arguments: DrawArguments::Indexed(arguments) });
+            first_index = end;
+        }
+    }
+    draws
 }
 
 /// Returns the box around the vertices that these indices name; all zeros if there are none.

@@ -18,6 +18,7 @@ mod prepared;
 mod request;
 mod result;
 mod selection;
+mod warnings;
 
 #[cfg(feature = "figures")]
 pub(crate) use prepared::FrameTime;
@@ -37,7 +38,7 @@ use self::request::{RedrawState, RenderTask};
 use self::result::fixed_layers;
 use self::selection::SelectedDevice;
 use super::input::Input;
-use super::output::Failure;
+use super::output::{self, Failure};
 use super::progress::Progress;
 use super::uniforms;
 use super::view::{SceneView, View};
@@ -54,6 +55,12 @@ pub(crate) fn render(
     let mut result = complete(request, input, (view, selection), scene, progress)?.result;
     let uniforms = uniforms::values(request.uniforms, &result.plan.variant)?;
     result.warn(request.description, &uniforms, &scene.scene);
+    let has_importance =
+        result.plan.resources.iter().any(|planned| planned.is_external() && !planned.is_opaque_depth());
+    if view.importance.is_some() && !has_importance && !view.is_later_frame {
+        let help = "choose `--set allocation=by_importance` for a storage that has it, or leave out `--importance`";
+        output::warn(&format!("{}: `--importance` changes nothing: {help}", request.description));
+    }
     if let Some(background) = result.opaque.take() {
         blend_over(&mut result.stats.pixels, &background);
     }

@@ -25,6 +25,22 @@ pub(crate) struct RenderRequest<'a> {
     pub(crate) words: &'a [&'a str],
 }
 
+impl<'a> RenderRequest<'a> {
+    /// Returns the request for a description without changes, of which losses are counted.
+    pub(crate) const fn new(description: &'a str) -> Self {
+        RenderRequest {
+            description,
+            set: &[],
+            uniforms: &[],
+            count_all: false,
+            opaque: None,
+            held: 0,
+            lagged: None,
+            words: &[],
+        }
+    }
+}
+
 /// One checked description to render on one device.
 pub(super) struct RenderTask<'a> {
     pub(super) request: &'a RenderRequest<'a>,

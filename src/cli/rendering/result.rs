@@ -1,12 +1,8 @@
-//! The result of a rendering: the image, the statistics of its frame, and warnings about what the image lacks.
+//! The result of a rendering: the image and the statistics of its frame.
 
 use fragbuf::Plan;
 use fragbuf::vocabulary::Capability;
-use fragbuf_frame::{Counters, LaggedValues, LoopEnd, LoopReport, OUT_OF_ORDER, PARTIAL_COVERAGE, PassTime, Value};
-use fragbuf_model::counted;
-use fragbuf_scene::Scene;
-
-use crate::cli::output::warn;
+use fragbuf_frame::{Counters, LaggedValues, LoopReport, PassTime};
 
 /// The option of an axis that sets how many layers a resolve pass holds. Layers beyond it are counted as `layers_exceeded`.
 const LAYERS: &str = "layers";
@@ -46,17 +42,6 @@ pub(crate) struct FrameStats {
     pub(crate) words: Vec<Vec<u32>>,
 }
 
-impl FrameStats {
-    /// Returns one message per loop that reached its limit.
-    fn unfinished_loops(&self) -> impl Iterator<Item = String> {
-        let unfinished = self.loops.iter().filter(|report| report.end == LoopEnd::LimitReached);
-        unfinished.map(|LoopReport { until, iterations, .. }| {
-            let limit = counted(*iterations, "iteration");
-            format!("the loop until {until} stopped at its limit of {limit}: the image is incomplete")
-        })
-    }
-}
-
 impl RenderResult {
     /// Returns the option that makes the resolve pass hold more layers, with twice the present value. `None` if all layers
     /// fitted or the option is at its maximum.
@@ -74,60 +59,6 @@ impl RenderResult {
     pub(crate) fn counts_everything(&self) -> bool {
         self.plan.selection.provides().contains(&Capability::CountsEvents)
     }
-
-    /// Prints a warning for everything that the image lacks. `uniforms` are those that the command line sets.
-    pub(super) fn warn(&self, description: &str, uniforms: &[(String, Value)], scene: &Scene) {
-        let warn = |text: &str| warn(&format!("{description}: {text}"));
-        if self.stats.pixels.iter().all(|[_, _, _, alpha]| *alpha == 0.0) {
-            let mut colors = scene.objects.iter().flat_map(|object| &object.colors);
-            warn(&match colors.all(|[_, _, _, alpha]| *alpha == 0.0) {
-                true => "the image is empty, because all colours of the scene have the alpha 0".to_owned(),
-                false => format!("the image is empty: {}", self.reasons_of_empty(uniforms)),
-            });
-        }
-        if self.opaque.is_some() && !self.plan.resources.iter().any(|planned| planned.is_opaque_depth()) {
-            warn("it does not read the opaque depth buffer, so fragments behind opaque surfaces are visible");
-        }
-        self.stats.unfinished_loops().for_each(|text| warn(&text));
-        for counter in self.stats.counters.iter().flat_map(|counters| &counters.0).filter(|counter| counter.count > 0) {
-            if counter.is_loss() {
-                warn(&format!("{} lost: {}", counted(counter.count, "fragment"), counter.name));
-            }
-            if counter.name == OUT_OF_ORDER {
-                warn(&format!(
-                    "{} arrived after farther ones had been composited; draw from front to back, or keep more",
-                    counted(counter.count, "fragment")
-                ));
-            }
-            if counter.name == PARTIAL_COVERAGE {
-                warn(&format!(
-                    "{} cover only a part of the pixel: at edges of triangles, pixels may show other fragments than the first",
-                    counted(counter.count, "fragment")
-                ));
-            }
-        }
-    }
-}
-
-impl RenderResult {
-    /// Returns what to check if the image is empty: the camera, and what the description has of constraints and uniforms that are 0.
-    fn reasons_of_empty(&self, uniforms: &[(String, Value)]) -> String {
-        let variant = &self.plan.variant;
-        let is_set = |name: &str| uniforms.iter().any(|(other, value)| other == name && !value.is_zero());
-        let zero: Vec<String> = variant
-            .uniforms
-            .iter()
-            .filter(|uniform| !is_set(&uniform.name.value))
-            .map(|uniform| format!("`{}`", uniform.name.value))
-            .collect();
-        let constraints = if variant.constraints.is_empty() { "" } else { " and the `where` constraints" };
-        let uniforms = match zero.as_slice() {
-            [] => String::new(),
-            [one] => format!("; the uniform {one} is 0 unless `--uniform` sets it"),
-            several => format!("; the uniforms {} are 0 unless `--uniform` sets them", several.join(", ")),
-        };
-        format!("check the camera{constraints}{uniforms}")
-    }
 }
 
 /// Returns how many layers a resolve pass holds, if the description or `--set` chooses it.
@@ -135,32 +66,4 @@ pub(super) fn fixed_layers(variant: &fragbuf::Variant) -> Option<u32> {
     let selected = variant.choices.iter().flat_map(|chosen| &chosen.alternatives);
     let mut options = selected.flat_map(|selected| &selected.options);
     options.find(|(name, _)| name == LAYERS).map(|(_, layers)| *layers)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn warns_when_a_loop_reaches_its_limit() {
-        let report = |end| LoopReport { until: "`left` is zero".to_owned(), iterations: 7, end };
-        let loops = vec![report(LoopEnd::ConditionMet), report(LoopEnd::LimitReached)];
-        let stats = FrameStats {
-            pixels: Vec::new(),
-            counters: None,
-            times: None,
-            bytes: 0,
-            slices: 1,
-            loops,
-            k: None,
-            is_lagged: false,
-            lagged: None,
-            words: Vec::new(),
-        };
-        let messages: Vec<String> = stats.unfinished_loops().collect();
-        assert!(
-            messages.len() == 1 && messages[0].contains("until `left` is zero stopped at its limit of 7"),
-            "{messages:?}"
-        );
-    }
 }

@@ -50,7 +50,8 @@ impl Repeat {
     }
 }
 
-/// When a loop ends.
+/// When a loop ends. A device that does not wait for the condition runs further iterations, whose passes may draw or not, while their clears,
+/// copies and exchanges happen: they must change nothing that a step after the loop reads.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Until {
     /// After this many iterations.

@@ -3,7 +3,7 @@
 use fragbuf_codegen::Stage;
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 
-use crate::Checked;
+use crate::{Checked, OpenGlBindings};
 
 /// One pass to emit.
 pub struct Emission<'a> {
@@ -15,6 +15,8 @@ pub struct Emission<'a> {
     pub prefix: &'a str,
     /// Atomic resources whose loads are hints, or are repeated inside the critical section.
     pub rechecked: Vec<String>,
+    /// The binding points of the plan in OpenGL.
+    pub opengl: &'a OpenGlBindings,
     /// The order in which an interlock admits invocations.
     pub(crate) interlock: InterlockOrder,
     /// Whether run-time checks are emitted.

@@ -7,7 +7,7 @@ use fragbuf_templates::vocabulary::{Access, Feature, Loads, Use};
 
 use crate::emission::{Emission, File, Guards, InterlockOrder};
 use crate::target::Target;
-use crate::{Checked, Workgroup, check};
+use crate::{Binding, Checked, OpenGlBindings, Workgroup, check};
 
 /// The number of bind groups that every device has. WebGPU's limit `maxBindGroups` is 4 unless a program asks for more.
 const COMMON_BIND_GROUPS: u32 = 4;
@@ -28,6 +28,10 @@ pub struct Request<'a> {
 /// The result of [`generate`].
 #[derive(Clone, Debug)]
 pub struct Generation {
+    /// Whether the files are programs or modules.
+    pub form: Form,
+    /// The prefix of every name except entry points.
+    pub prefix: String,
     /// The plans, each with the targets that use it. There is one, unless an `else` was taken on some target.
     pub plans: Vec<PlanForTargets>,
     /// The files, in the order of the targets, the passes and the stages.
@@ -45,11 +49,19 @@ pub struct PlanForTargets {
     pub targets: Vec<&'static Target>,
     /// The workgroups of its compute passes.
     pub workgroups: Vec<Workgroup>,
+    /// What the text of each pass declares, for each of the targets: one list per pass of the plan.
+    pub bindings: Vec<(&'static Target, Vec<Vec<Binding>>)>,
 }
 
 /// Generates a variant. A target that cannot express it is listed in [`Generation::unsupported`] and is not an error.
 pub fn generate(variant: &Variant, request: &Request<'_>, registry: &Registry) -> Result<Generation, Diagnostics> {
-    let mut generation = Generation { plans: Vec::new(), files: Vec::new(), unsupported: Vec::new() };
+    let mut generation = Generation {
+        form: request.form,
+        prefix: request.prefix.to_owned(),
+        plans: Vec::new(),
+        files: Vec::new(),
+        unsupported: Vec::new(),
+    };
     let mut programs: Vec<CheckedProgram> = Vec::new();
     for &target in request.targets {
         let Some(planned) = plan_for(variant, target, request, registry, &mut generation)? else { continue };
@@ -65,8 +77,10 @@ pub fn generate(variant: &Variant, request: &Request<'_>, registry: &Registry) -
                 programs.len() - 1
             }
         };
-        let plan = &generation.plans[planned].plan;
-        let files = emit(target, plan, &programs[index].passes, request)?;
+        let passes = &programs[index].passes;
+        let bindings = declared(&generation.plans[planned].plan, passes)?;
+        generation.plans[planned].bindings.push((target, bindings));
+        let files = emit(target, &generation.plans[planned].plan, passes, request)?;
         generation.files.extend(files);
     }
     Ok(generation)
@@ -106,7 +120,12 @@ fn plan_for(
         Some(index) => index,
         None => {
             let plan = plan(variant, &selection, registry)?;
-            generation.plans.push(PlanForTargets { plan, targets: Vec::new(), workgroups: Vec::new() });
+            generation.plans.push(PlanForTargets {
+                plan,
+                targets: Vec::new(),
+                workgroups: Vec::new(),
+                bindings: Vec::new(),
+            });
             generation.plans.len() - 1
         }
     };
@@ -144,6 +163,24 @@ fn checked(
     diagnostics.into_result(checked)
 }
 
+/// Returns what the text of each pass declares.
+fn declared(plan: &Plan, passes: &[Checked]) -> Result<Vec<Vec<Binding>>, Diagnostics> {
+    let mut diagnostics = Diagnostics::new();
+    let mut all = Vec::with_capacity(passes.len());
+    for checked in passes {
+        match checked.bindings() {
+            Ok(bindings) => all.push(bindings),
+            Err(problem) => diagnostics.push(Diagnostic::new(
+                codes::INTERNAL,
+                &plan.variant.name.span,
+                format!("the bindings of pass `{}`: {problem}", checked.pass().name),
+                "report this defect with the description",
+            )),
+        }
+    }
+    diagnostics.into_result(all)
+}
+
 fn emit(
     target: &'static Target,
     plan: &Plan,
@@ -152,6 +189,7 @@ fn emit(
 ) -> Result<Vec<File>, Diagnostics> {
     let prefix = if request.prefix.is_empty() { String::new() } else { format!("{}_", request.prefix) };
     let planned = &plan.passes;
+    let opengl = OpenGlBindings::of(plan);
     let mut diagnostics = Diagnostics::new();
     let mut files: Vec<File> = Vec::new();
     for (checked, pass) in passes.iter().zip(planned) {
@@ -162,6 +200,7 @@ fn emit(
             target: target.name,
             prefix: &prefix,
             rechecked: rechecked.map(|usage| format!("{prefix}{}", usage.resource)).collect(),
+            opengl: &opengl,
             interlock: match plan.requires.contains(&Feature::OrderedInterlock) {
                 true => InterlockOrder::Submission,
                 false => InterlockOrder::Any,

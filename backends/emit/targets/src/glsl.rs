@@ -1,6 +1,5 @@
 //! Emits GLSL with `fragbuf-glsl`, one file per entry point. A module is one file without `main`.
 
-use fragbuf_codegen::FIRST_BINDING;
 use fragbuf_glsl::{Dialect, Marker, Options, Slot, Unit, print};
 
 use crate::emission::{Emission, File, InterlockOrder, stage_name, stage_suffix};
@@ -60,7 +59,13 @@ fn printed(emission: &Emission<'_>, dialect: Dialect, unit: Unit<'_>) -> Result<
         dialect,
         header: &header,
         markers: &markers,
-        bindings: &|group, binding| slot(dialect, group, binding),
+        bindings: &|group, binding| match dialect {
+            Dialect::Vulkan450 => Slot { set: group, binding },
+            Dialect::OpenGl450 | Dialect::Es310 => {
+                // Every pass lists what its text declares, and what a pass lists has a point.
+                Slot { set: 0, binding: emission.opengl.point(binding).unwrap_or(binding) }
+            }
+        },
         plain_loads: &plain_loads,
         plain_functions: &guarded,
         written_first: &written_first,
@@ -80,13 +85,4 @@ fn printed(emission: &Emission<'_>, dialect: Dialect, unit: Unit<'_>) -> Result<
 fn is_vertex(emission: &Emission<'_>, name: &str) -> bool {
     let mut entries = emission.checked.pass().entry_points.iter();
     entries.any(|entry| entry.name == name && entry.stage == fragbuf_codegen::Stage::Vertex)
-}
-
-/// Returns the slot of a binding. OpenGL has no sets; it numbers uniform blocks and buffers separately and guarantees 8 buffers.
-pub(crate) fn slot(dialect: Dialect, group: u32, binding: u32) -> Slot {
-    match (dialect, binding.checked_sub(FIRST_BINDING)) {
-        (Dialect::Vulkan450, _) => Slot { set: group, binding },
-        (Dialect::OpenGl450 | Dialect::Es310, None) => Slot { set: 0, binding: group * FIRST_BINDING + binding },
-        (Dialect::OpenGl450 | Dialect::Es310, Some(buffer)) => Slot { set: 0, binding: group * 8 + buffer },
-    }
 }

@@ -9,6 +9,8 @@ use fragbuf_codegen::{FIRST_BINDING, MemberSource, Plan, PlannedPass, PlannedRes
 use fragbuf_model::UniformBlock;
 use fragbuf_templates::vocabulary::{Access, Element, Feature, Kind, TextureFormat};
 
+use crate::OpenGlBindings;
+
 /// A limit that a device must meet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Limit {
@@ -67,11 +69,48 @@ impl Limit {
         matches!((&self.needed, default), (Needed::Number(needed), Some(default)) if *needed > default)
     }
 
+    /// Returns the value that every OpenGL 4.5 has: Tables 23.53 to 23.70 of its specification. `None`: the limit has no name there.
+    pub fn opengl_minimum(&self) -> Option<u64> {
+        match self.opengl? {
+            // One name with an index in OpenGL, and three names in WebGPU.
+            "GL_MAX_COMPUTE_WORK_GROUP_SIZE" if self.is_of_webgpu("maxComputeWorkgroupSizeZ") => Some(64),
+            opengl => OPENGL_MINIMA.iter().find(|(name, _)| *name == opengl).map(|(_, value)| *value),
+        }
+    }
+
     /// Tests whether this is the limit of WebGPU with this name.
     pub fn is_of_webgpu(&self, name: &str) -> bool {
         self.webgpu.is_some_and(|webgpu| webgpu.name == name)
     }
 }
+
+/// What every OpenGL 4.5 has. The size of a workgroup is that along x and y.
+const OPENGL_MINIMA: [(&str, u64); 24] = [
+    ("GL_MAX_COMBINED_SHADER_OUTPUT_RESOURCES", 8),
+    ("GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS", 8),
+    ("GL_MAX_COMBINED_SHADER_STORAGE_BLOCKS", 8),
+    ("GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS", 8),
+    ("GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS", 8),
+    ("GL_MAX_UNIFORM_BUFFER_BINDINGS", 84),
+    ("GL_MAX_FRAGMENT_UNIFORM_BLOCKS", 14),
+    ("GL_MAX_COMPUTE_UNIFORM_BLOCKS", 14),
+    ("GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS", 80),
+    ("GL_MAX_TEXTURE_IMAGE_UNITS", 16),
+    ("GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS", 16),
+    ("GL_MAX_SHADER_STORAGE_BLOCK_SIZE", 1 << 27),
+    ("GL_MAX_UNIFORM_BLOCK_SIZE", 16_384),
+    ("GL_MAX_TEXTURE_SIZE", 16_384),
+    ("GL_MAX_DRAW_BUFFERS", 8),
+    ("GL_MAX_VERTEX_ATTRIBS", 16),
+    ("GL_MAX_VARYING_VECTORS", 15),
+    ("GL_MAX_INTEGER_SAMPLES", 1),
+    ("GL_MAX_COLOR_TEXTURE_SAMPLES", 1),
+    ("GL_MAX_DEPTH_TEXTURE_SAMPLES", 1),
+    ("GL_MAX_COMPUTE_WORK_GROUP_COUNT", 65_535),
+    ("GL_MAX_COMPUTE_WORK_GROUP_SIZE", 1024),
+    ("GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS", 1024),
+    ("GL_MAX_COMPUTE_SHARED_MEMORY_SIZE", 32_768),
+];
 
 /// Returns the limits of a plan whose resources are in bind group `group`.
 pub fn limits(plan: &Plan, group: u32, workgroups: &[Workgroup]) -> Vec<Limit> {
@@ -123,10 +162,16 @@ fn bindings(plan: &Plan, group: u32) -> Vec<Limit> {
     let combined = (None, "maxFragmentCombinedOutputResources", "GL_MAX_COMBINED_SHADER_OUTPUT_RESOURCES");
     let groups = (Some(("maxBindGroups", 4)), "maxBoundDescriptorSets", "");
     let numbers = (Some(("maxBindingsPerBindGroup", 1000)), "", "");
+    let points = OpenGlBindings::of(plan);
+    let of_opengl = |name: &'static str| (None, "", name);
     let mut limits = vec![
         row(groups, u64::from(group) + 1, Sharing::Greatest),
         row(numbers, all, Sharing::Greatest),
         row(combined, most(plan, &outputs), Sharing::Sum),
+        row(of_opengl("GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS"), u64::from(points.storage_buffers()), Sharing::Sum),
+        row(of_opengl("GL_MAX_COMBINED_SHADER_STORAGE_BLOCKS"), most(plan, &buffers), Sharing::Sum),
+        row(of_opengl("GL_MAX_UNIFORM_BUFFER_BINDINGS"), u64::from(FIRST_BINDING), Sharing::Sum),
+        row(of_opengl("GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS"), u64::from(points.texture_units()), Sharing::Sum),
     ];
     limits.extend(per_stage(plan, storage, storage_blocks, &buffers));
     limits.extend(per_stage(plan, uniform, uniform_blocks, &uniforms));

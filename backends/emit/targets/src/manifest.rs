@@ -1,23 +1,41 @@
 //! Writes `manifest.json`, which an engine follows to run the generated passes. The schema is versioned: within one version,
 //! fields are added and never renamed or removed.
 
-mod frame;
+mod bindings;
+pub(crate) mod frame;
+mod resources;
 
-use fragbuf_codegen::{GENERATOR, Plan, PlanSymbol, PlanValue, PlannedResource, SymbolId};
-use fragbuf_glsl::Dialect;
+use fragbuf_codegen::{Form, GENERATOR, Plan, PlanSymbol, PlanValue, SymbolId};
 use fragbuf_model::{UniformBlock, mangled};
-use fragbuf_templates::vocabulary::{Element, Init, Lifetime, SYMBOLS, TextureFormat};
-use fragbuf_templates::{COUNTERS, CounterKind};
+use fragbuf_templates::COUNTERS;
+use fragbuf_templates::vocabulary::SYMBOLS;
 use serde_json::{Map, Value, json};
 
 use crate::generate::{Generation, PlanForTargets};
-use crate::glsl::slot;
 use crate::limits::{Limit, Needed, Sharing, limits};
 use crate::names::kebab_case;
-use crate::tier;
+use crate::{Binding, OpenGlBindings, Requirements, Target, requirements, tier};
 
-/// The schema of `manifest.json`.
-pub const SCHEMA: &str = "fragbuf-manifest/3";
+/// The version of `manifest.json`.
+pub const SCHEMA: &str = "fragbuf-manifest/4";
+
+/// The JSON Schema of `manifest.json` (draft 2020-12).
+pub const JSON_SCHEMA: &str = include_str!("../manifest.schema.json");
+
+/// The bindings of the uniform blocks; the first resource follows.
+const FRAME: u32 = 0;
+const UNIFORMS: u32 = 1;
+const CAMERA: u32 = 2;
+
+/// A plan, and what else its part of a manifest depends on.
+struct Context<'a> {
+    plan: &'a Plan,
+    group: u32,
+    form: Form,
+    opengl: OpenGlBindings,
+    /// What the text of each pass declares, for each target.
+    bindings: &'a [(&'static Target, Vec<Vec<Binding>>)],
+}
 
 /// Returns the manifest of a generation whose resources are in bind group `group`.
 pub fn manifest(generation: &Generation, group: u32) -> Value {
@@ -29,10 +47,13 @@ pub fn manifest(generation: &Generation, group: u32) -> Value {
     let technique = first.and_then(|planned| planned.plan.variant.technique.clone());
     manifest.insert("technique".into(), technique.into());
     manifest.insert("name".into(), first.map(|planned| planned.plan.variant.name.value.clone()).into());
+    let form = if generation.form == Form::Program { "program" } else { "module" };
+    manifest.insert("form".into(), form.into());
+    manifest.insert("prefix".into(), generation.prefix.clone().into());
+    manifest.insert("conventions".into(), conventions());
     manifest.insert("files".into(), files(generation));
     if let Some(first) = first {
-        manifest.extend(plan_json(&first.plan, group));
-        manifest.insert("limits".into(), limits_json(first, group));
+        manifest.extend(planned_json(first, group, generation.form));
     }
     manifest.insert("tier".into(), tiers(&generation.plans));
     let unsupported: Map<String, Value> =
@@ -43,13 +64,41 @@ pub fn manifest(generation: &Generation, group: u32) -> Value {
             let mut alternative = Map::new();
             let targets: Vec<&str> = planned.targets.iter().map(|target| target.name).collect();
             alternative.insert("targets".into(), targets.into());
-            alternative.extend(plan_json(&planned.plan, group));
-            alternative.insert("limits".into(), limits_json(planned, group));
+            alternative.extend(planned_json(planned, group, generation.form));
             alternative.into()
         })
         .collect();
     manifest.insert("alternatives".into(), alternatives.into());
     manifest.into()
+}
+
+/// Returns the part of a manifest that depends on one plan and on its text.
+fn planned_json(planned: &PlanForTargets, group: u32, form: Form) -> Map<String, Value> {
+    let plan = &planned.plan;
+    let mut map = part(&Context { plan, group, form, opengl: OpenGlBindings::of(plan), bindings: &planned.bindings });
+    let requires = planned.bindings.iter().map(|(target, bindings)| {
+        let Requirements { api, version, features, extensions } = requirements(plan, target, bindings);
+        let value = json!({ "api": api, "version": version, "features": features, "extensions": extensions });
+        (target.name.to_owned(), value)
+    });
+    map.insert("requires".into(), requires.collect::<Map<_, _>>().into());
+    map.insert("limits".into(), limits_json(planned, group, form));
+    map
+}
+
+/// Returns what is the same in every manifest: how matrices, clip space and images are oriented, and the state of every pass that draws.
+/// The scissor rectangle is x, y, width and height.
+fn conventions() -> Value {
+    json!({
+        "matrices": "column-major",
+        "clip_depth": [0, 1],
+        "clip_y": "up",
+        "first_row": "top",
+        "topology": "triangle-list",
+        "cull_mode": "none",
+        "viewport": "frame",
+        "scissor": ["0", "first_row", "width", "height"],
+    })
 }
 
 fn files(generation: &Generation) -> Value {
@@ -77,14 +126,15 @@ fn tiers(plans: &[PlanForTargets]) -> Value {
     tiers.into()
 }
 
-/// Returns the limits that a device must meet.
-fn limits_json(planned: &PlanForTargets, group: u32) -> Value {
+/// Returns the limits that a device must meet. Vertices are the caller's in module form.
+fn limits_json(planned: &PlanForTargets, group: u32, form: Form) -> Value {
     let limit = |limit: Limit| {
         json!({
             "webgpu": limit.webgpu.map(|webgpu| webgpu.name),
             "webgpu_default": limit.webgpu.map(|webgpu| webgpu.default),
             "vulkan": limit.vulkan,
             "opengl": limit.opengl,
+            "opengl_minimum": limit.opengl_minimum(),
             "needed": match limit.needed {
                 Needed::Number(number) => Value::from(number),
                 Needed::Formula(formula) => Value::from(formula),
@@ -92,11 +142,21 @@ fn limits_json(planned: &PlanForTargets, group: u32) -> Value {
             "in_one_shader": if limit.sharing == Sharing::Sum { "sum" } else { "greatest" },
         })
     };
-    limits(&planned.plan, group, &planned.workgroups).into_iter().map(limit).collect()
+    let is_of_form = |limit: &Limit| {
+        let is_of_vertices =
+            ["maxVertexAttributes", "maxInterStageShaderVariables"].map(|name| limit.is_of_webgpu(name));
+        form == Form::Program || !is_of_vertices.contains(&true)
+    };
+    limits(&planned.plan, group, &planned.workgroups).into_iter().filter(is_of_form).map(limit).collect()
 }
 
-/// Returns the part of a manifest that depends on one plan.
+/// Returns the part of a manifest in program form that depends on a plan alone: without what its text declares.
 pub fn plan_json(plan: &Plan, group: u32) -> Map<String, Value> {
+    part(&Context { plan, group, form: Form::Program, opengl: OpenGlBindings::of(plan), bindings: &[] })
+}
+
+fn part(context: &Context<'_>) -> Map<String, Value> {
+    let Context { plan, .. } = *context;
     let mut map = Map::new();
     let axes: Map<String, Value> = plan
         .selection
@@ -115,11 +175,13 @@ pub fn plan_json(plan: &Plan, group: u32) -> Map<String, Value> {
         plan.constants.iter().map(|(name, value)| (name.clone(), Value::from(*value))).collect::<Map<_, _>>().into(),
     );
     map.insert("entry".into(), entry(plan));
-    map.insert("uniform_blocks".into(), uniform_blocks(plan, group));
-    map.insert("vertex_inputs".into(), vertex_inputs(plan));
-    map.insert("resources".into(), plan.resources.iter().map(|planned| resource(planned, group)).collect());
+    map.insert("uniform_blocks".into(), uniform_blocks(context));
+    if context.form == Form::Program {
+        map.insert("vertex_inputs".into(), vertex_inputs(plan));
+    }
+    map.insert("resources".into(), resources::resources(context));
     map.insert("exchanges".into(), frame::exchanges(plan));
-    map.insert("steps".into(), frame::steps(plan));
+    map.insert("steps".into(), frame::steps(context));
     map.insert("counters".into(), counters(plan));
     let hazards = plan.hazards.iter().map(|hazard| json!({ "name": hazard.name, "description": hazard.description }));
     map.insert("hazards".into(), hazards.collect());
@@ -155,32 +217,36 @@ fn entry(plan: &Plan) -> Value {
 }
 
 /// Returns the uniform blocks with their fields in order. Offsets and sizes are bytes of WGSL's uniform layout, which equals
-/// std140 for these types.
-fn uniform_blocks(plan: &Plan, group: u32) -> Value {
+/// std140 for these types. The camera's is read by the vertex stages of program form.
+fn uniform_blocks(context: &Context<'_>) -> Value {
+    let Context { plan, group, .. } = *context;
     let field = |name: &str, kind: &str, offset: u32| json!({ "name": name, "type": kind, "offset": offset });
     let frame = (0..).zip(&plan.fields).map(|(word, id)| field(&plan.symbols.get(*id).name, "u32", 4 * word));
     let frame: Vec<Value> = frame.collect();
     let uniforms = &plan.variant.uniforms;
     let UniformBlock { offsets, size } = UniformBlock::of(uniforms);
     let user_fields = offsets.into_iter().zip(uniforms);
-    let user_fields =
-        user_fields.map(|(offset, one)| field(&mangled(&one.name.value), one.kind.value.wgsl_type(), offset));
+    let user_fields = user_fields.map(|(offset, one)| {
+        let mut field = field(&mangled(&one.name.value), one.kind.value.wgsl_type(), offset);
+        field["uniform"] = one.name.value.as_str().into();
+        field
+    });
     let block = |name: &str, binding: u32, bytes: u32, fields: Vec<Value>| {
-        let opengl = opengl_binding(group, binding);
+        let opengl = context.opengl.point(binding);
         json!({
             "name": name, "group": group, "binding": binding, "opengl_binding": opengl, "bytes": bytes, "fields": fields,
         })
     };
-    let mut blocks = vec![block("frame", 0, (4 * plan.fields.len() as u32).next_multiple_of(16), frame)];
+    let mut blocks = vec![block("frame", FRAME, (4 * plan.fields.len() as u32).next_multiple_of(16), frame)];
     if !uniforms.is_empty() {
-        blocks.push(block("uniforms", 1, size, user_fields.collect()));
+        blocks.push(block("uniforms", UNIFORMS, size, user_fields.collect()));
     }
-    blocks.push(block("camera", 2, 64, vec![field("view_projection", "mat4x4<f32>", 0)]));
+    if context.form == Form::Program {
+        let mut matrix = field("view_projection", "mat4x4<f32>", 0);
+        matrix["column_stride"] = 16.into();
+        blocks.push(block("camera", CAMERA, 64, vec![matrix]));
+    }
     blocks.into()
-}
-
-fn opengl_binding(group: u32, binding: u32) -> u32 {
-    slot(Dialect::OpenGl450, group, binding).binding
 }
 
 /// Returns the vertex inputs of geometry passes, in program form.
@@ -193,94 +259,12 @@ fn vertex_inputs(plan: &Plan) -> Value {
     std::iter::once(position).chain(others).collect()
 }
 
-fn resource(planned: &PlannedResource, group: u32) -> Value {
-    let resource = &planned.resource;
-    let extents: Vec<Value> =
-        resource.extents.iter().map(|extent| json!({ "name": extent.name, "length": extent.length.0 })).collect();
-    let element = match resource.element {
-        Element::Texture(format) => format!("texture:{}", texture_format(format)),
-        Element::Word => "word".to_owned(),
-        Element::Word64 => "word64".to_owned(),
-        Element::Entry => "entry".to_owned(),
-        Element::Value => "value".to_owned(),
-        Element::ValueTextures(format) => format!("value-textures:{}", texture_format(format)),
-        Element::EntryTextures(format) => format!("entry-textures:{}", texture_format(format)),
-    };
-    let init = match resource.init {
-        Init::Clear(value) => json!({ "clear": value }),
-        Init::Keep => json!("keep"),
-        Init::External => json!("external"),
-    };
-    let mut value = json!({
-        "name": resource.name,
-        "group": group,
-        "binding": planned.binding,
-        "opengl_binding": opengl_binding(group, planned.binding),
-        "element": element,
-        "extents": extents,
-        "words": planned.words.to_string(),
-        "bytes": format!("4 * ({})", planned.words),
-        "init": init,
-        "lifetime": if resource.lifetime == Lifetime::Persistent { "persistent" } else { "frame" },
-        "summary": resource.summary,
-    });
-    if let Element::Texture(format) = resource.element {
-        value["texture"] = texture(planned, format);
-    }
-    value
-}
-
-/// Returns how to create a texture. It has the size of the frame; `clear` has one value per channel of its format. `word` is the
-/// field of an entry that it stores, if an entry is spread over one texture per word.
-fn texture(planned: &PlannedResource, format: TextureFormat) -> Value {
-    let resource = &planned.resource;
-    let clear = match resource.init {
-        Init::Clear(word) => texel(format, word),
-        _ => Value::Null,
-    };
-    json!({
-        "format": texture_format(format),
-        "samples": planned.sample_count().map_or("1", |count| &count.formula().0),
-        "clear": clear,
-        "word": planned.part.as_ref().map(|part| &part.field),
-    })
-}
-
-/// Returns the channels of a texel that stores this word.
-fn texel(format: TextureFormat, word: u32) -> Value {
-    match format {
-        TextureFormat::R32Uint => json!([word]),
-        TextureFormat::Rg16Uint => json!([word & 0xffff, word >> 16]),
-        TextureFormat::Rgba8Unorm => json!(word.to_le_bytes().map(|byte| f64::from(byte) / 255.0)),
-        TextureFormat::R32Float => json!([f32::from_bits(word)]),
-        TextureFormat::Rg32Float => vec![f32::from_bits(word); 2].into(),
-        TextureFormat::Rgba16Float => vec![f32::from_bits(word); 4].into(),
-        TextureFormat::Depth32Float => json!({ "depth": f32::from_bits(word) }),
-        TextureFormat::Depth24PlusStencil8 => {
-            json!({ "depth": f64::from(word >> 8) / 16_777_215.0, "stencil": word & 0xff })
-        }
-    }
-}
-
-fn texture_format(format: TextureFormat) -> &'static str {
-    match format {
-        TextureFormat::R32Uint => "r32uint",
-        TextureFormat::Rg16Uint => "rg16uint",
-        TextureFormat::R32Float => "r32float",
-        TextureFormat::Rg32Float => "rg32float",
-        TextureFormat::Rgba8Unorm => "rgba8unorm",
-        TextureFormat::Rgba16Float => "rgba16float",
-        TextureFormat::Depth32Float => "depth32float",
-        TextureFormat::Depth24PlusStencil8 => "depth24plus-stencil8",
-    }
-}
-
 fn counters(plan: &Plan) -> Value {
     if plan.resource("counters").is_none() {
         return json!([]);
     }
     let rows = COUNTERS.iter().enumerate().map(|(index, (name, kind, meaning))| {
-        let is_loss = *kind == CounterKind::Loss;
+        let is_loss = kind.makes_image_wrong();
         json!({ "name": name, "index": index, "is_loss": is_loss, "meaning": meaning })
     });
     rows.collect()

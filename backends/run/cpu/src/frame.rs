@@ -1,5 +1,6 @@
 //! Renders a frame, slice by slice: performs the steps of a cursor per slice. A step that this device does not support is an error.
 
+mod conditions;
 mod draw_arguments;
 mod objects;
 mod pass;
@@ -9,9 +10,11 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use fragbuf_codegen::PassId;
 use fragbuf_frame::{
-    COUNTERS_RESOURCE, Counters, Cursor, FrameStep, HostWait, LoopReport, PassTime, Values, WordRange, decide, resource,
+    COUNTERS_RESOURCE, Counters, Cursor, FrameStep, HostWait, LoopReport, PassTime, Values, WordRange,
+    check_conditions, decide, loop_reports, resource,
 };
 
+use self::conditions::ConditionWords;
 use crate::device::Device;
 use crate::memory::{Slice, Words, read, words, zeros};
 use crate::mesh::Mesh;
@@ -31,6 +34,7 @@ impl Device {
             let name = format!("the texture `{}`", planned.resource.name);
             return Err(fragbuf_frame::Error::BadValue { name, expected }.into());
         }
+        check_conditions(&code.plan, self.settings.conditions)?;
         self.decide()?;
         let (width, height) = (self.settings.width, self.settings.height);
         let slice = Slice { rows: 0..self.values.rows().min(height), size: (width, height) };
@@ -54,12 +58,18 @@ impl Device {
             counters: Vec::new(),
             loops: Vec::new(),
             out_of_bounds: Vec::new(),
-            cursor: Cursor::new(&code.plan, self.frame_readbacks(), self.memory.flipped),
+            cursor: self.cursor(self.memory.flipped),
             objects: Vec::new(),
+            conditions: ConditionWords::new(code.plan.frame.loops.len()),
             device: self,
         };
         frame.run()?;
         Ok(frame.picture())
+    }
+
+    /// Returns a cursor at the beginning of a slice.
+    fn cursor(&self, flipped: u32) -> Cursor {
+        Cursor::new(&self.code.plan, self.frame_readbacks(), flipped).with_conditions(self.settings.conditions)
     }
 }
 
@@ -102,6 +112,7 @@ struct Frame<'a> {
     cursor: Cursor,
     /// The result of the last query per object: 0 if no sample of its box passed.
     objects: Vec<u32>,
+    conditions: ConditionWords,
 }
 
 impl Frame<'_> {
@@ -126,7 +137,8 @@ impl Frame<'_> {
         self.number = number;
         self.output.iter_mut().for_each(|word| *word = AtomicU32::default());
         self.samples.fill(0);
-        self.cursor = Cursor::new(&self.code.plan, self.device.frame_readbacks(), flipped);
+        self.cursor = self.device.cursor(flipped);
+        self.conditions.dropped.clear();
         self.device.values = values.clone();
         self.device.memory.resize(&self.code.plan, values, &self.device.limits)
     }
@@ -140,7 +152,9 @@ impl Frame<'_> {
                     self.device.memory.clear(plan, resource, value, &self.slice);
                 }
                 FrameStep::Copy { from, to } => self.device.memory.copy(plan, from, to, &self.slice),
-                FrameStep::Pass(run) => self.pass(run)?,
+                FrameStep::Pass(run) if self.conditions.draws(run.conditional) => self.pass(run)?,
+                FrameStep::Pass(run) => self.samples[run.pass.0] = 0,
+                FrameStep::Condition(condition) => self.update_conditions(condition),
                 FrameStep::Wait(wait) => {
                     let words = self.read_back(wait);
                     self.cursor.supply(plan, &words, &mut self.device.values)?;
@@ -190,7 +204,8 @@ impl Frame<'_> {
         for (pass, milliseconds) in self.code.plan.passes.iter().zip(&self.times) {
             times.push(PassTime { milliseconds: *milliseconds, ..PassTime::zero(pass.name.clone()) });
         }
-        let Frame { pixels, out_of_bounds, all_samples: samples, counters: slice_counters, loops, .. } = self;
+        let Frame { pixels, out_of_bounds, all_samples: samples, counters: slice_counters, mut loops, .. } = self;
+        loops.extend(loop_reports(&self.code.plan, &self.conditions.loops));
         let counters = (!slice_counters.is_empty()).then(|| Counters::total(&slice_counters));
         Picture { pixels, times, counters, slice_counters, out_of_bounds, samples, loops }
     }

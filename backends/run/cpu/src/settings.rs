@@ -1,6 +1,6 @@
 //! The settings of a device.
 
-use fragbuf_frame::{DEFAULT_MEMORY, Decisions, Sizing};
+use fragbuf_frame::{Conditions, DEFAULT_MEMORY, Decisions, Sizing};
 
 /// The settings of a device. [`Settings::new`] has the defaults; every field may be changed.
 #[derive(Clone, Copy, Debug)]
@@ -13,6 +13,8 @@ pub struct Settings {
     pub sizing: Sizing,
     /// Whether frames use the decisions of their own host steps, or those of earlier frames.
     pub decisions: Decisions,
+    /// Who ends loops and drops objects: the result is that of a GPU that does so by itself.
+    pub conditions: Conditions,
     /// The order in which the fragments of a pixel run.
     pub order: FragmentOrder,
     /// The rows of a slice. The frame is drawn slice by slice, and each slice draws the whole mesh. `None`: as many rows as
@@ -36,6 +38,7 @@ impl Settings {
             height,
             sizing: Sizing::Auto,
             decisions: Decisions::Immediate,
+            conditions: Conditions::OnHost,
             order: FragmentOrder::Submission,
             slice: None,
             memory: DEFAULT_MEMORY,

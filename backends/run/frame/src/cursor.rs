@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use fragbuf_codegen::{Action, Command, Decision, LoopId, LoopUntil, Parity, PassId, Plan, ResourceId};
 use fragbuf_templates::vocabulary::Objects;
 
+use crate::condition::{Condition, ConditionWord, Conditions};
 use crate::host_step::{apply, decision, word_ranges};
 use crate::loops::iteration_limit;
 use crate::step::{FrameStep, HostRead, HostWait, PassRun, WordRange};
@@ -18,6 +19,7 @@ use crate::{Error, LoopEnd, LoopReport, Readbacks, Values};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cursor {
     readbacks: Readbacks,
+    conditions: Conditions,
     /// The next command.
     at: usize,
     /// The loops around it, the innermost last, each with its iteration.
@@ -28,6 +30,8 @@ pub struct Cursor {
     base: u32,
     /// The objects that queries have dropped, by the query's pass.
     dropped: BTreeMap<PassId, Vec<bool>>,
+    /// The update of a query's objects on the device that follows the query's pass.
+    update: Option<Condition>,
     /// The request that is not supplied yet, and its purpose.
     requested: Option<(HostWait, Purpose)>,
     loops: Vec<LoopReport>,
@@ -49,18 +53,29 @@ impl Cursor {
     pub fn new(plan: &Plan, readbacks: Readbacks, flipped: u32) -> Self {
         Cursor {
             readbacks,
+            conditions: Conditions::OnHost,
             at: 0,
             around: Vec::new(),
             finished: vec![0; plan.frame.loops.len()],
             base: flipped,
             dropped: BTreeMap::new(),
+            update: None,
             requested: None,
             loops: Vec::new(),
         }
     }
 
+    /// Sets who evaluates the conditions of loops and objects; at first it is the host.
+    #[must_use]
+    pub fn with_conditions(self, conditions: Conditions) -> Self {
+        Cursor { conditions, ..self }
+    }
+
     /// Returns the next step; `None` at the end of the frame. A request repeats until its words are supplied.
     pub fn next(&mut self, plan: &Plan, values: &Values) -> Result<Option<FrameStep>, Error> {
+        if let Some(update) = self.update.take() {
+            return Ok(Some(FrameStep::Condition(update)));
+        }
         if let Some((wait, _)) = &self.requested {
             return Ok(Some(FrameStep::Wait(wait.clone())));
         }
@@ -77,12 +92,12 @@ impl Cursor {
                         continue;
                     }
                 },
-                Action::Loop(id) => {
-                    self.enter(plan, values, *id)?;
-                    continue;
-                }
+                Action::Loop(id) => match self.enter(plan, values, *id)? {
+                    Some(step) => return Ok(Some(step)),
+                    None => continue,
+                },
                 Action::LoopEnd(id) => match self.end_iteration(plan, values, *id)? {
-                    Some(wait) => return Ok(Some(FrameStep::Wait(wait))),
+                    Some(step) => return Ok(Some(step)),
                     None => continue,
                 },
                 Action::Host(decision) => match self.host_step(plan, values, decision, flipped)? {
@@ -159,44 +174,69 @@ impl Cursor {
 
     /// Returns a run of a pass; `None` for an object query without readbacks.
     fn run(&mut self, plan: &Plan, pass: PassId, flipped: u32) -> Option<PassRun> {
+        let conditional = self.conditional_loop(plan);
         if plan.passes[pass.0].objects == Objects::Boxes {
-            if self.readbacks == Readbacks::Disabled {
-                return None;
+            match (self.conditions, self.readbacks) {
+                (Conditions::OnDevice, _) => {
+                    self.update = Some(Condition::Objects { pass: query(plan, pass), around: conditional });
+                }
+                (Conditions::OnHost, Readbacks::Disabled) => return None,
+                (Conditions::OnHost, _) => self.requested = Some((HostWait::Objects(pass), Purpose::Objects(pass))),
             }
-            self.requested = Some((HostWait::Objects(pass), Purpose::Objects(pass)));
         }
         let iteration = self.around.last().map_or(0, |(_, iteration)| *iteration);
-        Some(PassRun { pass, iteration, flipped })
+        Some(PassRun { pass, iteration, flipped, conditional })
     }
 
-    fn enter(&mut self, plan: &Plan, values: &Values, id: LoopId) -> Result<(), Error> {
+    /// Returns the innermost loop around the next command whose condition the device evaluates.
+    fn conditional_loop(&self, plan: &Plan) -> Option<LoopId> {
+        let is_conditional = |id: &LoopId| plan.frame.loops[id.0].until != LoopUntil::Times;
+        let inside_out = self.around.iter().rev().map(|(id, _)| *id);
+        inside_out.filter(|_| self.conditions != Conditions::OnHost).find(is_conditional)
+    }
+
+    /// Moves into a loop, or past one without iterations. Returns the update of the device's words.
+    fn enter(&mut self, plan: &Plan, values: &Values, id: LoopId) -> Result<Option<FrameStep>, Error> {
         let looped = &plan.frame.loops[id.0];
         if iteration_limit(values, &looped.max_iterations)? == 0 {
             self.at = looped.end + 1;
-        } else {
-            self.around.push((id, 0));
-            self.at += 1;
+            return Ok(None);
         }
-        Ok(())
+        let around = self.conditional_loop(plan);
+        self.around.push((id, 0));
+        self.at += 1;
+        let is_conditional = self.conditional_loop(plan) == Some(id);
+        Ok(is_conditional.then_some(FrameStep::Condition(Condition::Begin { id, around })))
     }
 
-    /// Returns the request whose words decide whether the loop continues; `None` if the cursor has moved without one.
-    fn end_iteration(&mut self, plan: &Plan, values: &Values, id: LoopId) -> Result<Option<HostWait>, Error> {
-        let wait = match plan.frame.loops[id.0].until {
+    /// Returns the request whose words decide whether the loop continues, or the update of the device's words; `None` if the cursor
+    /// has moved without one.
+    fn end_iteration(&mut self, plan: &Plan, values: &Values, id: LoopId) -> Result<Option<FrameStep>, Error> {
+        let word = match plan.frame.loops[id.0].until {
             LoopUntil::Times => None,
-            _ if self.readbacks == Readbacks::Disabled => None,
-            LoopUntil::NoSamples(pass) => Some(HostWait::Samples(pass)),
+            LoopUntil::NoSamples(pass) => Some(ConditionWord::Samples(pass)),
             LoopUntil::WordIsZero(resource) => {
-                let flipped = self.flipped(plan);
-                let resource = plan.frame.physical(resource, flipped);
-                Some(HostWait::Words(vec![WordRange { resource, first: 0, count: 1 }]))
+                let resource = plan.frame.physical(resource, self.flipped(plan));
+                Some(ConditionWord::Word(WordRange { resource, first: 0, count: 1 }))
             }
         };
-        match &wait {
-            None => self.finish_iteration(plan, values, id, LoopEnd::LimitReached)?,
-            Some(wait) => self.requested = Some((wait.clone(), Purpose::LoopEnd(id))),
+        let Some(word) =
+            word.filter(|_| self.conditional_loop(plan).is_some() || self.readbacks != Readbacks::Disabled)
+        else {
+            self.finish_iteration(plan, values, id, LoopEnd::LimitReached)?;
+            return Ok(None);
+        };
+        if self.conditions != Conditions::OnHost {
+            self.finish_iteration(plan, values, id, LoopEnd::LimitReached)?;
+            let is_last = !self.around.iter().any(|(around, _)| *around == id);
+            return Ok(Some(FrameStep::Condition(Condition::End { id, word, is_last })));
         }
-        Ok(wait)
+        let wait = match word {
+            ConditionWord::Word(word) => HostWait::Words(vec![word]),
+            ConditionWord::Samples(pass) => HostWait::Samples(pass),
+        };
+        self.requested = Some((wait.clone(), Purpose::LoopEnd(id)));
+        Ok(Some(FrameStep::Wait(wait)))
     }
 
     /// Moves to the beginning of a loop's body, or past its end. `end` is how the loop ends if this iteration is the last one.
@@ -213,7 +253,7 @@ impl Cursor {
         }
         self.around.pop();
         self.at = looped.end + 1;
-        let is_observed = self.readbacks != Readbacks::Disabled;
+        let is_observed = self.conditions == Conditions::OnHost && self.readbacks != Readbacks::Disabled;
         if let Some(until) = until(plan, looped.until).filter(|_| is_observed) {
             LoopReport { until, iterations, end }.merge_into(&mut self.loops);
         }
@@ -249,7 +289,7 @@ fn query(plan: &Plan, pass: PassId) -> PassId {
 }
 
 /// Returns the end condition of a loop as a sentence; `None` if its iteration count is fixed.
-fn until(plan: &Plan, until: LoopUntil) -> Option<String> {
+pub(crate) fn until(plan: &Plan, until: LoopUntil) -> Option<String> {
     match until {
         LoopUntil::Times => None,
         LoopUntil::WordIsZero(id) => Some(format!("`{}` is zero", plan.resources[id.0].resource.name)),

@@ -6,6 +6,7 @@
 //! one.
 
 mod boxes;
+mod condition;
 mod counters;
 mod cursor;
 mod error;
@@ -24,6 +25,7 @@ pub use boxes::{
     BOX_CORNERS, BOX_TRIANGLES, box_around, box_corners, box_vertices, grown_box, is_below_a_pixel,
     is_cut_by_near_plane,
 };
+pub use condition::{Condition, ConditionWord, Conditions, LOOP_WORDS, check_conditions, loop_reports, object_queries};
 pub use counters::{COUNTERS_RESOURCE, Counter, Counters, OUT_OF_ORDER, PARTIAL_COVERAGE, POOL_EXHAUSTED};
 pub use cursor::Cursor;
 pub use error::{Error, MemoryNeed};

@@ -1,6 +1,8 @@
 //! The steps of a frame, and the words that the host supplies between them.
 
-use fragbuf_codegen::{PassId, ResourceId};
+use fragbuf_codegen::{LoopId, PassId, ResourceId};
+
+use crate::Condition;
 
 /// The next step for the device.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +27,8 @@ pub enum FrameStep {
     Wait(HostWait),
     /// Copy words for a host step whose decision takes effect in a later frame ([`decide`](crate::decide)); the frame continues at once.
     Read(HostRead),
+    /// Update the words on the device that decide which passes draw ([`Conditions::OnDevice`](crate::Conditions::OnDevice)).
+    Condition(Condition),
 }
 
 /// The words of a host step that the frame does not wait for.
@@ -46,6 +50,8 @@ pub struct PassRun {
     /// The flipped exchanges of the frame, one bit each. They select the physical resources of the pass:
     /// [`LoweredFrame::physical`](fragbuf_codegen::LoweredFrame::physical).
     pub flipped: u32,
+    /// The innermost loop around it whose condition the device evaluates: the pass draws nothing once that loop is over.
+    pub conditional: Option<LoopId>,
 }
 
 /// The words that the host must supply before the frame continues.

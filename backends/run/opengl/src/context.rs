@@ -1,15 +1,24 @@
-//! Opens an OpenGL 4.5 context without a window or a display server: EGL's surfaceless platform, which Mesa has, or else the first device
-//! that EGL lists and that opens, which is how the drivers of GPU vendors are reached.
+//! Opens a context of OpenGL or OpenGL ES without a window or a display server: EGL's surfaceless platform, which Mesa has, or else the
+//! first device that EGL lists and that opens, which is how the drivers of GPU vendors are reached.
 
 use std::ffi::c_void;
 use std::mem::transmute;
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use glow::HasContext as _;
 use khronos_egl as egl;
 
 use crate::Error;
+use crate::api::{Api, Desktop};
 
 type Egl = egl::DynamicInstance<egl::EGL1_5>;
+
+/// EGL, once per process. It is never unloaded: drivers register destructors of threads, which run when a thread ends and would then
+/// be in unmapped memory.
+static LIBRARY: OnceLock<Result<Egl, String>> = OnceLock::new();
+
+/// Held while a context is opened or closed. Mesa 22.3 crashes if threads do that at the same time.
+static CHANGING: Mutex<()> = Mutex::new(());
 
 /// `EGL_PLATFORM_SURFACELESS_MESA`.
 const SURFACELESS: egl::Enum = 0x31dd;
@@ -23,70 +32,65 @@ type QueryDevices = unsafe extern "system" fn(egl::Int, *mut *mut c_void, *mut e
 
 // Functions of OpenGL that glow lacks.
 type SampleMask = unsafe extern "system" fn(u32, u32);
-type ClearBuffer = unsafe extern "system" fn(u32, u32, u32, u32, *const c_void);
-type ClearTexture = unsafe extern "system" fn(u32, i32, u32, u32, *const c_void);
 type FramebufferParameter = unsafe extern "system" fn(u32, u32, i32);
 
-/// An OpenGL context, current on the thread that opened it.
+/// A context of OpenGL or OpenGL ES, current on the thread that opened it.
 pub struct Context {
     /// The functions of OpenGL.
     pub gl: glow::Context,
     /// The renderer and its version.
     pub name: String,
+    /// The API.
+    pub api: Api,
     pub(crate) sample_mask: SampleMask,
-    pub(crate) clear_buffer: ClearBuffer,
-    pub(crate) clear_texture: ClearTexture,
+    pub(crate) desktop: Option<Desktop>,
     pub(crate) framebuffer_parameter: FramebufferParameter,
-    egl: Egl,
+    egl: &'static Egl,
     display: egl::Display,
     context: egl::Context,
 }
 
 impl Context {
-    /// Opens a context and makes it current. Window coordinates count from the upper left corner, so the first row of a texture is the
-    /// upper row of the image. Generated vertex shaders convert depth to the range of OpenGL themselves.
+    /// Opens OpenGL 4.5 and makes it current.
     pub fn surfaceless() -> Result<Self, Error> {
-        let failed = |what: &str, error: &dyn std::fmt::Display| Error(format!("no OpenGL: {what}: {error}"));
-        // SAFETY: the library is the system's EGL, whose initialisers may run.
-        let egl = unsafe { Egl::load_required() }.map_err(|error| failed("libEGL.so.1 with EGL 1.5", &error))?;
-        let display = open_display(&egl).map_err(|error| failed("the surfaceless platform", &error))?;
-        egl.bind_api(egl::OPENGL_API).map_err(|error| failed("eglBindAPI", &error))?;
-        let wanted = [egl::SURFACE_TYPE, egl::PBUFFER_BIT, egl::RENDERABLE_TYPE, egl::OPENGL_BIT, egl::NONE];
+        Context::open(Api::OpenGl)
+    }
+
+    /// Opens a context and makes it current. `Host` turns the scene upside down, so that the first row of a texture is the upper row of the
+    /// image; front faces are therefore clockwise in the window. Generated vertex shaders convert depth to the range of OpenGL themselves.
+    pub fn open(api: Api) -> Result<Self, Error> {
+        let failed = |what: &str, error: &dyn std::fmt::Display| Error(format!("no {api}: {what}: {error}"));
+        let egl = library().map_err(|error| failed("libEGL.so.1 with EGL 1.5", &error))?;
+        let _changing = changing();
+        let display = open_display(egl).map_err(|error| failed("the surfaceless platform", &error))?;
+        egl.bind_api(api.egl_api()).map_err(|error| failed("eglBindAPI", &error))?;
+        let wanted = [egl::SURFACE_TYPE, egl::PBUFFER_BIT, egl::RENDERABLE_TYPE, api.egl_bit(), egl::NONE];
         let config = egl.choose_first_config(display, &wanted).map_err(|error| failed("eglChooseConfig", &error))?;
-        let config = config.ok_or_else(|| Error("no OpenGL: no configuration for it".to_owned()))?;
-        let version = [
-            egl::CONTEXT_MAJOR_VERSION,
-            4,
-            egl::CONTEXT_MINOR_VERSION,
-            5,
-            egl::CONTEXT_OPENGL_PROFILE_MASK,
-            egl::CONTEXT_OPENGL_CORE_PROFILE_BIT,
-            egl::NONE,
-        ];
-        let context = egl.create_context(display, config, None, &version);
-        let context = context.map_err(|error| failed("a context of version 4.5", &error))?;
+        let config = config.ok_or_else(|| Error(format!("no {api}: no configuration for it")))?;
+        let context = egl.create_context(display, config, None, &api.egl_attributes());
+        let [major, minor] = api.version();
+        let context = context.map_err(|error| failed(&format!("a context of version {major}.{minor}"), &error))?;
         egl.make_current(display, None, None, Some(context)).map_err(|error| failed("eglMakeCurrent", &error))?;
-        let address =
-            |name: &str| egl.get_proc_address(name).map_or(std::ptr::null(), |function| function as *const c_void);
+        let function = |name: &str| {
+            // Functions of extensions that a later version contains.
+            let function = egl.get_proc_address(name).or_else(|| egl.get_proc_address(&format!("{name}EXT")));
+            function.map(|function| function as *const c_void)
+        };
         // SAFETY: the addresses are those of the current context.
-        let gl = unsafe { glow::Context::from_loader_function(address) };
-        // SAFETY: the context is current, and OpenGL 4.5 has these functions with these types.
+        let gl = unsafe { glow::Context::from_loader_function(|name| function(name).unwrap_or(std::ptr::null())) };
+        let function = |name: &str| function(name).ok_or_else(|| Error(format!("no {api}: no function {name}")));
+        // SAFETY: the context is current, and both APIs have these functions with these types.
         unsafe {
-            let function = |name: &str| match egl.get_proc_address(name) {
-                Some(function) => Ok(function as *const c_void),
-                None => Err(Error(format!("no OpenGL: no function {name}"))),
-            };
-            let clip_control: unsafe extern "system" fn(u32, u32) = transmute(function("glClipControl")?);
-            clip_control(glow::UPPER_LEFT, glow::NEGATIVE_ONE_TO_ONE);
+            gl.front_face(glow::CW);
             Ok(Context {
                 name: format!(
                     "{}, {}",
                     gl.get_parameter_string(glow::RENDERER),
                     gl.get_parameter_string(glow::VERSION)
                 ),
+                api,
                 sample_mask: transmute::<*const c_void, SampleMask>(function("glSampleMaski")?),
-                clear_buffer: transmute::<*const c_void, ClearBuffer>(function("glClearNamedBufferData")?),
-                clear_texture: transmute::<*const c_void, ClearTexture>(function("glClearTexImage")?),
+                desktop: api.desktop(&function)?,
                 framebuffer_parameter: transmute::<*const c_void, FramebufferParameter>(function(
                     "glFramebufferParameteri",
                 )?),
@@ -97,6 +101,17 @@ impl Context {
             })
         }
     }
+}
+
+fn library() -> Result<&'static Egl, &'static String> {
+    // SAFETY: the library is the system's EGL, whose initialisers may run.
+    let load = || unsafe { Egl::load_required() }.map_err(|error| error.to_string());
+    LIBRARY.get_or_init(load).as_ref()
+}
+
+fn changing() -> MutexGuard<'static, ()> {
+    // A thread that panicked meanwhile left nothing half done that another would read.
+    CHANGING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Returns an initialised display, of the surfaceless platform where that has one.
@@ -129,16 +144,28 @@ fn devices(egl: &Egl) -> Vec<*mut c_void> {
 }
 
 impl Context {
-    /// Whether the driver has an extension.
+    /// Tests whether the driver has an extension, or a version that contains it.
     pub fn has(&self, extension: &str) -> bool {
+        let version = self.gl.version();
         self.gl.supported_extensions().contains(extension)
+            || self.api.contains(extension, (version.major, version.minor))
+    }
+
+    /// Checks that the driver has every extension.
+    pub(crate) fn require(&self, extensions: &[String]) -> Result<(), Error> {
+        let missing: Vec<&str> = extensions.iter().map(String::as_str).filter(|one| !self.has(one)).collect();
+        if missing.is_empty() { Ok(()) } else { Err(Error(format!("the driver lacks {}", missing.join(" and ")))) }
     }
 }
 
 impl Drop for Context {
     fn drop(&mut self) {
-        // A context that cannot be released is lost anyway.
-        let _ = self.egl.make_current(self.display, None, None, None);
+        let _changing = changing();
+        // A context that cannot be released is lost anyway. One that was opened later on this thread stays current.
+        let _ = self.egl.bind_api(self.api.egl_api());
+        if self.egl.get_current_context() == Some(self.context) {
+            let _ = self.egl.make_current(self.display, None, None, None);
+        }
         let _ = self.egl.destroy_context(self.display, self.context);
     }
 }

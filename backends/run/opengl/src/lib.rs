@@ -1,39 +1,33 @@
-//! A host for OpenGL 4.5: it runs generated GLSL passes and knows nothing but their manifest.
+//! A host for OpenGL 4.5 and OpenGL ES 3.1: it runs generated GLSL passes and reads nothing but their manifest.
 //!
-//! Input: `manifest.json`, the files that it names, a scene. Output: the image, the words of any buffer, the counters. It contains no name
-//! of a technique, a resource or a pass, so it runs whatever the description says. `context` opens OpenGL without a window, `manifest`
-//! parses, `formula` evaluates sizes, `memory` creates buffers and textures, `state` sets the fixed-function state of a pass, and
-//! `frame` follows the steps of a frame. `compute` runs a single shader, for tests of printed GLSL.
+//! Input: `manifest.json`, the files that it names, a scene, in module form a material. Output: the image, the words of any buffer, the
+//! counters. It contains no name of a technique, a resource or a pass, so it runs whatever the description says. The crate
+//! `fragbuf-follow` parses the manifest, evaluates sizes and walks through the steps of a frame; `device` carries them out, and `draw` runs
+//! a pass. `context` opens OpenGL without a window, `api` has the differences of the two APIs, `limits` compares the manifest with the
+//! driver, `material` joins shaders of the caller with passes in module form, `memory` creates buffers and textures, and `state` sets
+//! the fixed-function state of a pass. `compute` runs a single shader, for tests of printed GLSL. The guide's chapter `opengl` explains
+//! how to follow a manifest with these APIs.
 #![allow(unsafe_code, reason = "every call of OpenGL is unsafe")]
 
+mod api;
 mod compute;
 mod context;
-mod formula;
-mod frame;
+mod device;
+mod draw;
 mod host;
-mod manifest;
+mod limits;
+mod material;
 mod memory;
 mod peer;
 mod program;
 mod state;
 mod timing;
 
-use std::fmt;
-
+pub use api::Api;
 pub use context::Context;
-pub use host::{Host, Image, Object, Scene};
-pub use manifest::VertexInput;
+pub use fragbuf_follow::manifest::VertexInput;
+pub use fragbuf_follow::{Error, Image, Object, Scene};
+pub use host::Host;
+pub use material::Material;
 pub use peer::{Description, PROJECTS, Peer, Project};
 pub use timing::{Comparison, WARM_UP, compare};
-
-/// An error: a message for people.
-#[derive(Debug)]
-pub struct Error(pub String);
-
-impl fmt::Display for Error {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for Error {}

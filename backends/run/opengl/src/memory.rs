@@ -1,16 +1,15 @@
 //! The buffers and textures of a plan.
 
-use std::ptr::from_ref;
-
+use fragbuf_follow::manifest::Texture;
 use glow::HasContext as _;
 
-use crate::manifest::{Resource, Texture};
+use crate::api::fill;
 use crate::{Context, Error};
 
 /// The memory of one resource.
 #[derive(Clone, Copy)]
 pub enum Memory {
-    Buffer { buffer: glow::Buffer, words: u64 },
+    Buffer { buffer: glow::Buffer, bytes: u64 },
     Texture { texture: glow::Texture, kind: u32, format: Format },
 }
 
@@ -23,21 +22,36 @@ pub struct Format {
 }
 
 impl Format {
-    pub const OUTPUT: Format = Format { internal: glow::RGBA32F, attachment: glow::COLOR_ATTACHMENT0 };
+    pub const fn color(internal: u32) -> Self {
+        Format { internal, attachment: glow::COLOR_ATTACHMENT0 }
+    }
 
     fn named(name: &str) -> Result<Self, Error> {
-        let (internal, attachment) = match name {
-            "r32uint" => (glow::R32UI, glow::COLOR_ATTACHMENT0),
-            "rg16uint" => (glow::RG16UI, glow::COLOR_ATTACHMENT0),
-            "r32float" => (glow::R32F, glow::COLOR_ATTACHMENT0),
-            "rg32float" => (glow::RG32F, glow::COLOR_ATTACHMENT0),
-            "rgba8unorm" => (glow::RGBA8, glow::COLOR_ATTACHMENT0),
-            "rgba16float" => (glow::RGBA16F, glow::COLOR_ATTACHMENT0),
-            "depth32float" => (glow::DEPTH_COMPONENT32F, glow::DEPTH_ATTACHMENT),
-            "depth24plus-stencil8" => (glow::DEPTH24_STENCIL8, glow::DEPTH_STENCIL_ATTACHMENT),
+        let internal = match name {
+            "r32uint" => glow::R32UI,
+            "rg16uint" => glow::RG16UI,
+            "r32float" => glow::R32F,
+            "rg32float" => glow::RG32F,
+            "rgba8unorm" => glow::RGBA8,
+            "rgba16float" => glow::RGBA16F,
+            "depth32float" => {
+                return Ok(Format { internal: glow::DEPTH_COMPONENT32F, attachment: glow::DEPTH_ATTACHMENT });
+            }
+            "depth24plus-stencil8" => {
+                return Ok(Format { internal: glow::DEPTH24_STENCIL8, attachment: glow::DEPTH_STENCIL_ATTACHMENT });
+            }
             _ => return Err(Error(format!("unknown texture format `{name}`"))),
         };
-        Ok(Format { internal, attachment })
+        Ok(Format::color(internal))
+    }
+
+    /// The parts that a copy copies.
+    fn planes(self) -> u32 {
+        match self.attachment {
+            glow::DEPTH_ATTACHMENT => glow::DEPTH_BUFFER_BIT,
+            glow::DEPTH_STENCIL_ATTACHMENT => glow::DEPTH_BUFFER_BIT | glow::STENCIL_BUFFER_BIT,
+            _ => glow::COLOR_BUFFER_BIT,
+        }
     }
 
     fn is_integer(self) -> bool {
@@ -46,25 +60,32 @@ impl Format {
 }
 
 impl Memory {
-    /// Creates a buffer of `words` words.
-    pub fn buffer(gl: &glow::Context, words: u64) -> Result<Self, Error> {
-        let bytes = words.max(1).checked_mul(4).and_then(|bytes| i32::try_from(bytes).ok());
-        let bytes = bytes.ok_or_else(|| Error(format!("a buffer of {words} words is more than 2 GiB")))?;
+    /// Creates a buffer of whole words. `name` is for the message about one that is too large.
+    pub fn buffer(gl: &glow::Context, name: &str, bytes: u64) -> Result<Self, Error> {
+        let size = i32::try_from(bytes).map_err(|_| {
+            Error(format!(
+                "`{name}` needs {bytes} bytes, more than 2 GiB: set a smaller `fragments`, or draw a smaller frame"
+            ))
+        })?;
         // SAFETY: the context is current.
         unsafe {
-            let buffer = gl.create_named_buffer().map_err(Error)?;
-            gl.named_buffer_data_size(buffer, bytes, glow::DYNAMIC_COPY);
-            Ok(Memory::Buffer { buffer, words })
+            let buffer = gl.create_buffer().map_err(Error)?;
+            gl.bind_buffer(glow::COPY_WRITE_BUFFER, Some(buffer));
+            gl.buffer_data_size(glow::COPY_WRITE_BUFFER, size, glow::DYNAMIC_COPY);
+            Ok(Memory::Buffer { buffer, bytes })
         }
     }
 
     /// Creates a buffer with these words.
     pub fn of_words(gl: &glow::Context, words: &[u32]) -> Result<Self, Error> {
-        let memory = Memory::buffer(gl, words.len() as u64)?;
+        let memory = Memory::buffer(gl, "words", 4 * words.len().max(1) as u64)?;
         if let Memory::Buffer { buffer, .. } = memory {
             let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
             // SAFETY: the context is current, and the buffer has room for the words.
-            unsafe { gl.named_buffer_sub_data_u8_slice(buffer, 0, &bytes) };
+            unsafe {
+                gl.bind_buffer(glow::COPY_WRITE_BUFFER, Some(buffer));
+                gl.buffer_sub_data_u8_slice(glow::COPY_WRITE_BUFFER, 0, &bytes);
+            }
         }
         Ok(memory)
     }
@@ -74,7 +95,7 @@ impl Memory {
         let kind = if samples > 1 { glow::TEXTURE_2D_MULTISAMPLE } else { glow::TEXTURE_2D };
         // SAFETY: the context is current.
         unsafe {
-            let texture = gl.create_named_texture(kind).map_err(Error)?;
+            let texture = gl.create_texture().map_err(Error)?;
             gl.bind_texture(kind, Some(texture));
             if samples > 1 {
                 gl.tex_storage_2d_multisample(kind, samples as i32, format.internal, width, height, true);
@@ -92,16 +113,16 @@ impl Memory {
         }
     }
 
-    /// Creates the memory of a resource. `value` evaluates a formula.
-    pub fn of(
-        gl: &glow::Context,
-        resource: &Resource,
-        size: [i32; 2],
-        value: &dyn Fn(&str) -> Result<u64, Error>,
-    ) -> Result<Self, Error> {
-        match &resource.texture {
-            None => Memory::buffer(gl, value(&resource.words)?),
-            Some(Texture { format, samples, .. }) => Memory::texture(gl, Format::named(format)?, value(samples)?, size),
+    /// Creates a texture of the manifest with the size of the frame.
+    pub fn texture_of(gl: &glow::Context, texture: &Texture, samples: u64, size: [i32; 2]) -> Result<Self, Error> {
+        Memory::texture(gl, Format::named(&texture.format)?, samples, size)
+    }
+
+    /// The bytes of a buffer.
+    pub fn bytes(self) -> u64 {
+        match self {
+            Memory::Buffer { bytes, .. } => bytes,
+            Memory::Texture { .. } => 0,
         }
     }
 
@@ -123,7 +144,10 @@ impl Memory {
                 Memory::Buffer { buffer, .. } => {
                     gl.bind_buffer_base(glow::SHADER_STORAGE_BUFFER, binding, Some(buffer))
                 }
-                Memory::Texture { texture, .. } => gl.bind_texture_unit(binding, Some(texture)),
+                Memory::Texture { texture, kind, .. } => {
+                    gl.active_texture(glow::TEXTURE0 + binding);
+                    gl.bind_texture(kind, Some(texture));
+                }
             }
         }
     }
@@ -131,20 +155,12 @@ impl Memory {
     /// Sets every word to `value`, and every texel to `texel`. Leaves another framebuffer bound.
     pub fn clear(self, context: &Context, value: u32, texel: &serde_json::Value) {
         let gl = &context.gl;
-        // SAFETY: the context is current; a cleared buffer has whole words.
+        let format = match self {
+            Memory::Buffer { buffer, bytes } => return fill(gl, context.desktop.as_ref(), buffer, bytes / 4, value),
+            Memory::Texture { format, .. } => format,
+        };
+        // SAFETY: the context is current.
         unsafe {
-            let Memory::Texture { format, .. } = self else {
-                let Memory::Buffer { buffer, .. } = self else { return };
-                let name = buffer.0.get();
-                (context.clear_buffer)(
-                    name,
-                    glow::R32UI,
-                    glow::RED_INTEGER,
-                    glow::UNSIGNED_INT,
-                    from_ref(&value).cast(),
-                );
-                return;
-            };
             let framebuffer = gl.create_framebuffer().ok();
             gl.bind_framebuffer(glow::FRAMEBUFFER, framebuffer);
             self.attach(gl, 0);
@@ -175,58 +191,99 @@ impl Memory {
         }
     }
 
+    /// Writes a number per texel of a texture of floats or depths.
+    pub fn write(self, gl: &glow::Context, texels: &[f32], [width, height]: [i32; 2]) {
+        let Memory::Texture { texture, kind, format } = self else { return };
+        let channel = if format.attachment == glow::DEPTH_ATTACHMENT { glow::DEPTH_COMPONENT } else { glow::RED };
+        let bytes: Vec<u8> = texels.iter().flat_map(|texel| texel.to_le_bytes()).collect();
+        let data = glow::PixelUnpackData::Slice(Some(&bytes));
+        // SAFETY: the context is current, and there are as many texels as the texture has.
+        unsafe {
+            gl.bind_texture(kind, Some(texture));
+            gl.tex_sub_image_2d(kind, 0, 0, 0, width, height, channel, glow::FLOAT, data);
+        }
+    }
+
     /// Attaches a texture to the bound framebuffer, a colour format as the attachment of this index. Returns the attachment.
     pub fn attach(self, gl: &glow::Context, index: u32) -> Option<u32> {
-        let Memory::Texture { texture, format, .. } = self else { return None };
+        self.attach_to(gl, glow::FRAMEBUFFER, index)
+    }
+
+    fn attach_to(self, gl: &glow::Context, framebuffer: u32, index: u32) -> Option<u32> {
+        let Memory::Texture { texture, kind, format } = self else { return None };
         let is_color = format.attachment == glow::COLOR_ATTACHMENT0;
         let attachment = if is_color { format.attachment + index } else { format.attachment };
         // SAFETY: the context is current.
-        unsafe { gl.framebuffer_texture(glow::FRAMEBUFFER, attachment, Some(texture), 0) };
+        unsafe { gl.framebuffer_texture_2d(framebuffer, attachment, kind, Some(texture), 0) };
         Some(attachment)
     }
 
-    /// Copies the memory of `from`, which has the same shape.
-    pub fn copy_from(self, gl: &glow::Context, from: Memory, [width, height]: [i32; 2]) {
+    /// Copies the memory of `from`, which has the same shape. Leaves another framebuffer bound.
+    pub fn copy_from(self, gl: &glow::Context, from: Memory, [width, height]: [i32; 2]) -> Result<(), Error> {
         // SAFETY: the context is current and both have the same shape.
         unsafe {
             match (from, self) {
-                (Memory::Buffer { buffer: from, words }, Memory::Buffer { buffer: to, .. }) => {
+                (Memory::Buffer { buffer: from, bytes }, Memory::Buffer { buffer: to, .. }) => {
                     gl.bind_buffer(glow::COPY_READ_BUFFER, Some(from));
                     gl.bind_buffer(glow::COPY_WRITE_BUFFER, Some(to));
-                    gl.copy_buffer_sub_data(glow::COPY_READ_BUFFER, glow::COPY_WRITE_BUFFER, 0, 0, 4 * words as i32);
+                    gl.copy_buffer_sub_data(glow::COPY_READ_BUFFER, glow::COPY_WRITE_BUFFER, 0, 0, bytes as i32);
                 }
-                (Memory::Texture { texture: from, kind, .. }, Memory::Texture { texture: to, .. }) => {
-                    gl.copy_image_sub_data(from, kind, 0, 0, 0, 0, to, kind, 0, 0, 0, 0, width, height, 1);
+                (Memory::Texture { format, .. }, Memory::Texture { .. }) => {
+                    let [source, destination] =
+                        [gl.create_framebuffer().map_err(Error)?, gl.create_framebuffer().map_err(Error)?];
+                    gl.bind_framebuffer(glow::READ_FRAMEBUFFER, Some(source));
+                    gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, Some(destination));
+                    from.attach_to(gl, glow::READ_FRAMEBUFFER, 0);
+                    self.attach_to(gl, glow::DRAW_FRAMEBUFFER, 0);
+                    let (w, h) = (width, height);
+                    gl.blit_framebuffer(0, 0, w, h, 0, 0, w, h, format.planes(), glow::NEAREST);
+                    gl.delete_framebuffer(source);
+                    gl.delete_framebuffer(destination);
                 }
                 _ => {}
             }
         }
+        Ok(())
     }
 
-    /// Reads all texels of a colour texture: red, green, blue and alpha, row by row from the top.
-    pub fn texels(self, gl: &glow::Context, [width, height]: [i32; 2]) -> Vec<[f32; 4]> {
+    /// Reads all texels of a colour texture of floats: red, green, blue and alpha, row by row from the top. Leaves another framebuffer
+    /// bound.
+    pub fn texels(self, gl: &glow::Context, [width, height]: [i32; 2]) -> Result<Vec<[f32; 4]>, Error> {
         let mut bytes = vec![0; 16 * (width * height) as usize];
-        let Memory::Texture { texture, kind, .. } = self else { return Vec::new() };
         // SAFETY: the context is current, and `bytes` has room for every texel.
         unsafe {
-            gl.bind_texture(kind, Some(texture));
-            gl.get_tex_image(kind, 0, glow::RGBA, glow::FLOAT, glow::PixelPackData::Slice(Some(&mut bytes)));
+            let framebuffer = gl.create_framebuffer().map_err(Error)?;
+            gl.bind_framebuffer(glow::READ_FRAMEBUFFER, Some(framebuffer));
+            self.attach_to(gl, glow::READ_FRAMEBUFFER, 0);
+            let pixels = glow::PixelPackData::Slice(Some(&mut bytes));
+            gl.read_pixels(0, 0, width, height, glow::RGBA, glow::FLOAT, pixels);
+            gl.delete_framebuffer(framebuffer);
         }
         let channel =
             |bytes: &[u8], index: usize| f32::from_le_bytes(std::array::from_fn(|byte| bytes[4 * index + byte]));
-        bytes.chunks_exact(16).map(|texel| std::array::from_fn(|index| channel(texel, index))).collect()
+        Ok(bytes.chunks_exact(16).map(|texel| std::array::from_fn(|index| channel(texel, index))).collect())
     }
 
     /// Reads words of a buffer.
     pub fn words(self, gl: &glow::Context, first: u64, count: u64) -> Vec<u32> {
-        let Memory::Buffer { buffer, words } = self else { return Vec::new() };
-        let count = count.min(words.saturating_sub(first));
-        let mut bytes = vec![0; 4 * count as usize];
-        // SAFETY: the context is current and the range lies inside the buffer.
+        let Memory::Buffer { buffer, bytes } = self else { return Vec::new() };
+        let count = count.min((bytes / 4).saturating_sub(first)) as usize;
+        let mut result = vec![0_u32; count];
+        if count == 0 {
+            return result;
+        }
+        // SAFETY: the context is current, the range lies inside the buffer, and so many bytes are mapped. OpenGL aligns a mapped
+        // buffer, so that the offset of a word is a multiple of its alignment.
         unsafe {
             gl.bind_buffer(glow::COPY_READ_BUFFER, Some(buffer));
-            gl.get_buffer_sub_data(glow::COPY_READ_BUFFER, 4 * first as i32, &mut bytes);
+            let (offset, bytes) = (4 * first as i32, 4 * count as i32);
+            let mapped = gl.map_buffer_range(glow::COPY_READ_BUFFER, offset, bytes, glow::MAP_READ_BIT);
+            // A buffer that cannot be mapped leaves an error of OpenGL, which the end of the frame reports.
+            if !mapped.is_null() {
+                std::ptr::copy_nonoverlapping(mapped, result.as_mut_ptr().cast(), 4 * count);
+                gl.unmap_buffer(glow::COPY_READ_BUFFER);
+            }
         }
-        bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect()
+        result
     }
 }

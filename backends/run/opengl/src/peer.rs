@@ -8,14 +8,16 @@ mod table;
 
 use std::time::Duration;
 
+use fragbuf_follow::{Image, Scene};
 use glow::HasContext as _;
 
 pub use self::description::Description;
 pub use self::table::{PROJECTS, Project};
 
 use self::memory::PeerMemory;
-use crate::host::{Image, Scene};
-use crate::memory::{Format, Memory};
+use crate::api::Desktop;
+use crate::device::upside_down;
+use crate::memory::Memory;
 use crate::program::link;
 use crate::timing::finished_at;
 use crate::{Context, Error};
@@ -44,6 +46,7 @@ void main() {
 /// A peer's technique on an OpenGL context, with memory for one size of the frame.
 pub struct Peer<'c> {
     context: &'c Context,
+    desktop: &'c Desktop,
     size: [i32; 2],
     memory: Vec<PeerMemory>,
     passes: Vec<Pass>,
@@ -74,6 +77,12 @@ impl<'c> Peer<'c> {
         [width, height]: [u32; 2],
     ) -> Result<Self, Error> {
         let gl = &context.gl;
+        let Some(desktop) = &context.desktop else {
+            return Err(Error(format!(
+                "shaders of other projects need OpenGL, and the context is one of {}",
+                context.api
+            )));
+        };
         let size = [width as i32, height as i32];
         let memory = description.memory.iter().map(|memory| PeerMemory::new(gl, memory, size));
         let memory = memory.collect::<Result<_, Error>>()?;
@@ -103,7 +112,7 @@ impl<'c> Peer<'c> {
             let file = pass.fragment.rsplit('/').next().unwrap_or_default();
             passes.push(Pass { name: file.to_owned(), program, draws_scene: pass.scene, has_output: pass.output });
         }
-        let output = Memory::texture(gl, Format::OUTPUT, 1, size)?;
+        let output = Memory::texture(gl, context.api.output(), 1, size)?;
         // SAFETY: the context is current.
         unsafe {
             let framebuffers = [gl.create_framebuffer().map_err(Error)?, gl.create_framebuffer().map_err(Error)?];
@@ -121,7 +130,18 @@ impl<'c> Peer<'c> {
                 gl.enable_vertex_attrib_array(location);
                 gl.vertex_attrib_pointer_f32(location, components, glow::FLOAT, false, STRIDE, offset);
             }
-            Ok(Peer { context, size, memory, passes, output, framebuffers, layouts, vertices, pass_times: None })
+            Ok(Peer {
+                context,
+                desktop,
+                size,
+                memory,
+                passes,
+                output,
+                framebuffers,
+                layouts,
+                vertices,
+                pass_times: None,
+            })
         }
     }
 
@@ -138,7 +158,7 @@ impl<'c> Peer<'c> {
         let vertices: i32 = scene.objects.iter().map(|object| object.count as i32).sum();
         self.output.clear(self.context, 0, &background.as_slice().into());
         for memory in &self.memory {
-            memory.clear(self.context);
+            memory.clear(self.desktop);
             memory.bind(gl);
         }
         let [width, height] = self.size;
@@ -160,7 +180,7 @@ impl<'c> Peer<'c> {
                 gl.bind_vertex_array(Some(self.layouts[usize::from(pass.draws_scene)]));
                 if pass.draws_scene {
                     let location = gl.get_uniform_location(pass.program, "view_projection");
-                    gl.uniform_matrix_4_f32_slice(location.as_ref(), false, &scene.view_projection);
+                    gl.uniform_matrix_4_f32_slice(location.as_ref(), false, &upside_down(scene));
                     gl.draw_arrays(glow::TRIANGLES, 0, vertices);
                 } else {
                     gl.draw_arrays(glow::TRIANGLES, 0, 3);
@@ -182,6 +202,7 @@ impl<'c> Peer<'c> {
         if error != glow::NO_ERROR {
             return Err(Error(format!("OpenGL reports error {error:#x} in a peer's frame")));
         }
-        Ok(Image { pixels: self.output.texels(gl, self.size), counters: Default::default() })
+        let pixels = self.output.texels(gl, self.size)?;
+        Ok(Image { pixels, counters: Default::default(), lost: 0 })
     }
 }

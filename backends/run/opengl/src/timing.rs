@@ -2,9 +2,10 @@
 
 use std::time::{Duration, Instant};
 
+use fragbuf_follow::Scene;
 use glow::HasContext as _;
 
-use crate::host::{Host, Scene};
+use crate::host::Host;
 use crate::peer::Peer;
 use crate::{Context, Error};
 

@@ -2,13 +2,37 @@
 
 use fragbuf_templates::vocabulary::Pass;
 
+use crate::Error;
+use crate::draws::{CallArguments, SceneDraw};
+
 /// One draw that the caller makes.
 #[derive(Clone, Copy, Debug)]
 pub struct Call<'a> {
     /// The pass.
     pub pass: &'a Pass,
-    /// The objects to draw, by their numbers in [`Renderer::set_objects`](crate::Renderer::set_objects); `None`: all.
+    /// The objects to draw, by their numbers in [`Renderer::set_objects`](crate::Renderer::set_objects), in ascending order; `None`: all.
     pub objects: Option<&'a [u32]>,
+    /// The draws of [`Renderer::set_draws`](crate::Renderer::set_draws).
+    pub(crate) draws: &'a [SceneDraw],
+    pub(crate) arguments: CallArguments<'a>,
+}
+
+impl Call<'_> {
+    /// Records draw `number` of [`Renderer::set_draws`](crate::Renderer::set_draws), unless its object is not to be drawn. The caller has
+    /// set its vertex and index buffers. With [`Conditions::OnDevice`](crate::Conditions::OnDevice) every draw of the scene must be
+    /// recorded by this function: the device skips it once a loop is over. Fails if there is no such draw.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, number: usize) -> Result<(), Error> {
+        let Some(draw) = self.draws.get(number) else {
+            return Err(Error::BadValue {
+                name: format!("the draw {number}"),
+                expected: format!("less than {}, the number of draws of `Renderer::set_draws`", self.draws.len()),
+            });
+        };
+        if self.objects.is_none_or(|objects| objects.binary_search(&draw.object).is_ok()) {
+            draw.record(pass, number, self.arguments);
+        }
+        Ok(())
+    }
 }
 
 /// The view that frames are resolved into.

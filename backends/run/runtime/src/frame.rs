@@ -7,8 +7,9 @@
 //!
 //! Each call takes the frame by value, so that a segment cannot be recorded twice or out of order.
 
-use fragbuf_frame::{FrameStep, HostWait, LoopReport};
+use fragbuf_frame::{Conditions, FrameStep, HostWait, LoopReport, check_conditions};
 
+use crate::conditional::workgroups_of;
 use crate::draw::{Draw, Output};
 use crate::error_scope::{in_error_scope, is_lost};
 use crate::external::missing;
@@ -23,6 +24,8 @@ pub struct Frame {
     id: u64,
     at: FrameCursor,
     recording: Recording,
+    /// Whether a part of it is recorded.
+    is_begun: bool,
     /// The words for lagged decisions; `None` if the frame copies none.
     reads: Option<FrameReads>,
 }
@@ -32,7 +35,8 @@ pub struct Frame {
 #[allow(clippy::large_enum_variant, reason = "there is one per submission, and it is not stored")]
 pub enum Recorded {
     /// The frame is complete once the commands are submitted. The reports are on the loops that end on a condition; there are
-    /// none if memory was reserved, because then loops run to their limits.
+    /// none if memory was reserved, because then loops run to their limits, and none if they end on the device
+    /// ([`Renderer::loop_reports`]).
     Finished(Vec<LoopReport>),
     /// Submit the recorded commands, then resume.
     Suspended(SuspendedFrame),
@@ -59,10 +63,18 @@ impl Frame {
         }
         // All errors occur here, before anything is recorded.
         let segment = segment(&renderer.frame_inputs(), self.at.clone())?;
+        if let Some(conditional) = renderer.conditional.as_ref().filter(|_| !self.is_begun) {
+            conditional.begin_frame(encoder);
+        }
+        self.is_begun = true;
+        self.recording.begin_segment(workgroups_of(&renderer.device, &segment.parts));
         for part in &segment.parts {
             let action = match part {
                 SegmentPart::SliceEnd(slice) => {
                     copy_slice_counters(renderer, encoder, *slice);
+                    if let Some(conditional) = &renderer.conditional {
+                        conditional.begin_slice(encoder, renderer.plan());
+                    }
                     continue;
                 }
                 SegmentPart::Action(action) => action,
@@ -82,6 +94,11 @@ impl Frame {
                     if let Some(reads) = &mut self.reads {
                         let wait = HostWait::Words(read.ranges.clone());
                         reads.push((read.clone(), readbacks(renderer, encoder, &wait, &self.recording.runs)));
+                    }
+                }
+                FrameStep::Condition(condition) => {
+                    if let Some(conditional) = &renderer.conditional {
+                        conditional.update(renderer, encoder, condition);
                     }
                 }
                 FrameStep::Wait(_) => {}
@@ -157,9 +174,28 @@ impl Renderer {
         }
         self.write_frame_blocks()?;
         self.frame_id += 1;
-        let at = FrameCursor::new(self.plan(), self.frame_readbacks(), self.flipped());
+        let conditions = self.begin_conditions()?;
+        let at = FrameCursor::new(self.plan(), self.frame_readbacks(), conditions, self.flipped());
         let reads = self.copies_reads().then(Vec::new);
-        Ok(Frame { id: self.frame_id, at, recording: Recording::default(), reads })
+        Ok(Frame { id: self.frame_id, at, recording: Recording::default(), is_begun: false, reads })
+    }
+
+    /// Writes which objects the device must not drop. Returns who evaluates the conditions of the frame.
+    fn begin_conditions(&self) -> Result<Conditions, Error> {
+        check_conditions(self.plan(), self.conditions)?;
+        let Some(conditional) = &self.conditional else { return Ok(Conditions::OnHost) };
+        if self.draws.is_none() {
+            return Err(Error::BadValue {
+                name: "the draws of the scene".to_owned(),
+                expected: "set with `Renderer::set_draws`, because the device ends the loops of the frame".to_owned(),
+            });
+        }
+        if let Some(objects) = &self.objects {
+            let undecided: Vec<u32> =
+                objects.boxes().iter().map(|object| u32::from(self.is_undecided(object))).collect();
+            conditional.write_undecided(&self.queue, &undecided);
+        }
+        Ok(self.conditions)
     }
 
     /// Renders and submits a whole frame, and blocks where the host must read. Browsers cannot block: record segments and await

@@ -20,7 +20,9 @@ mod attachments;
 mod bind_groups;
 mod blocking;
 mod buckets;
+mod conditional;
 mod draw;
+mod draws;
 mod error;
 mod error_scope;
 mod external;
@@ -46,6 +48,7 @@ mod recording;
 mod renderer;
 mod results;
 mod samples;
+mod scene;
 mod segment;
 mod settings;
 mod shaders;
@@ -59,10 +62,11 @@ mod words;
 pub use blocking::block_on;
 pub use buckets::Buckets;
 pub use draw::{Call, Draw, Output};
+pub use draws::{DrawArguments, SceneDraw};
 pub use error::Error;
 pub use fragbuf_frame::{
-    Counter, Counters, DEFAULT_MEMORY, Decisions, LaggedValues, LoopEnd, LoopReport, MemoryNeed, PassTime, PoolSize,
-    Sizing, Value,
+    Conditions, Counter, Counters, DEFAULT_MEMORY, Decisions, LaggedValues, LoopEnd, LoopReport, MemoryNeed, PassTime,
+    PoolSize, Sizing, Value,
 };
 pub use frame::{Frame, Recorded, SuspendedFrame};
 pub use geometry_pass::{GeometryPass, ModuleFunction};

@@ -74,10 +74,14 @@ impl Objects {
         &self.boxes
     }
 
-    /// Draws the box of one object.
-    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, object: u32) {
+    /// Sets the buffers of the boxes.
+    pub(crate) fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
+    }
+
+    /// Draws the box of one object, whose buffers are set.
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, object: u32) {
         pass.draw_indexed(0..BOX_TRIANGLES.len() as u32, (object * BOX_CORNERS as u32).cast_signed(), 0..1);
     }
 }

@@ -5,12 +5,14 @@
 
 use std::ops::Range;
 
-use fragbuf_codegen::{PassId, PlannedPass, ResourceId};
+use fragbuf_codegen::{LoopId, PassId, PlannedPass, ResourceId};
 use fragbuf_frame::{COUNTERS_RESOURCE, Cursor, HostWait, PassRun, WordRange};
 use fragbuf_templates::vocabulary::{Kind, Objects};
 
 use crate::attachments::{Attachments, Clears, OutputState, Textures};
+use crate::conditional::ConditionalDraws;
 use crate::draw::{Call, Draw, Output};
+use crate::draws::CallArguments;
 use crate::pattern::PATTERN;
 use crate::pipeline::Pipeline;
 use crate::pipelines::PreparedPass;
@@ -25,9 +27,16 @@ pub(crate) struct Recording {
     pub(crate) clears: Clears,
     /// The runs of passes so far.
     pub(crate) runs: Vec<PassId>,
+    /// The workgroups of this segment's compute passes in loops that end on the device, and the byte offset of the next.
+    workgroups: (Option<wgpu::Buffer>, u64),
 }
 
 impl Recording {
+    /// Begins a segment with these workgroups.
+    pub(crate) fn begin_segment(&mut self, workgroups: Option<wgpu::Buffer>) {
+        self.workgroups = (workgroups, 0);
+    }
+
     /// Records a copy between resources.
     pub(crate) fn copy(
         &mut self,
@@ -69,10 +78,14 @@ impl Recording {
                 end_of_pass_write_index: Some(end),
             });
             let label = Some(prepared.pass.name.as_str());
+            let arguments = match arguments_buffer(renderer, &prepared.pass, run.flipped) {
+                None => self.conditional_workgroups(renderer, encoder, run),
+                own => own,
+            };
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes });
             pass.set_pipeline(pipeline);
             pass.set_bind_group(renderer.pipeline_set().group, group, &[offset]);
-            match arguments_buffer(renderer, &prepared.pass, run.flipped) {
+            match arguments {
                 Some(arguments) => pass.dispatch_workgroups_indirect(arguments, 0),
                 None => {
                     let [x, y, z] = action.groups;
@@ -105,6 +118,20 @@ impl Recording {
         if prepared.query.is_some() {
             pass.end_occlusion_query();
         }
+    }
+
+    /// Returns the buffer with the workgroups of a compute pass in a loop that ends on the device.
+    fn conditional_workgroups<'r>(
+        &mut self,
+        renderer: &'r Renderer,
+        encoder: &mut wgpu::CommandEncoder,
+        run: PassRun,
+    ) -> Option<&'r wgpu::Buffer> {
+        let (conditional, id) = conditional(renderer, run)?;
+        let (workgroups, offset) = &mut self.workgroups;
+        let of_run = (workgroups.as_ref()?, *offset);
+        *offset += 8;
+        Some(conditional.prepare_dispatch(encoder, id, of_run))
     }
 
     fn begin_render_pass<'e>(
@@ -144,26 +171,44 @@ fn draw_pass(
     draw: &mut Draw<'_>,
 ) {
     match (&planned.kind, &planned.objects) {
-        (Kind::Geometry, Objects::Boxes) => draw_boxes(renderer, pass, run.pass, cursor),
-        (Kind::Geometry, Objects::All) => draw(pass, &Call { pass: planned, objects: None }),
-        (Kind::Geometry, Objects::Visible(query)) => {
-            let visible = visible_objects(renderer, query, cursor);
-            draw(pass, &Call { pass: planned, objects: visible.as_deref() });
+        (Kind::Geometry, Objects::Boxes) => draw_boxes(renderer, pass, run, cursor),
+        (Kind::Geometry, objects) => {
+            let query = match objects {
+                Objects::Visible(query) => renderer.plan().pass_id(query),
+                _ => None,
+            };
+            let visible = query.and_then(|query| visible_objects(renderer, query, cursor));
+            let arguments = conditional(renderer, run)
+                .map_or(CallArguments::Direct, |(conditional, id)| conditional.scene(id, query));
+            let draws = renderer.draws.as_deref().unwrap_or_default();
+            draw(pass, &Call { pass: planned, objects: visible.as_deref(), draws, arguments });
         }
-        _ => match arguments_buffer(renderer, planned, run.flipped) {
-            Some(arguments) => pass.draw_indirect(arguments, 0),
-            None => pass.draw(0..3, 0..1),
+        _ => match (arguments_buffer(renderer, planned, run.flipped), conditional(renderer, run)) {
+            (Some(arguments), _) => pass.draw_indirect(arguments, 0),
+            (None, Some((conditional, id))) => conditional.draw_fullscreen(pass, id),
+            (None, None) => pass.draw(0..3, 0..1),
         },
     }
 }
 
+/// Returns the loop around a run that ends on the device.
+fn conditional(renderer: &Renderer, run: PassRun) -> Option<(&ConditionalDraws, LoopId)> {
+    renderer.conditional.as_ref().zip(run.conditional)
+}
+
 /// Draws the box of every object in a query. The query of a dropped object is empty.
-fn draw_boxes(renderer: &Renderer, pass: &mut wgpu::RenderPass<'_>, query: PassId, cursor: &Cursor) {
+fn draw_boxes(renderer: &Renderer, pass: &mut wgpu::RenderPass<'_>, run: PassRun, cursor: &Cursor) {
     let Some(objects) = &renderer.objects else { return };
+    let plan = renderer.plan();
+    let query = plan.pass_id(&plan.passes[run.pass.0].name).unwrap_or(run.pass);
     let first = renderer.pipeline_set().loop_queries();
     for object in 0..objects.boxes().len() as u32 {
         pass.begin_occlusion_query(first + object);
-        if !cursor.is_dropped(renderer.plan(), query, object as usize) {
+        if let Some((conditional, id)) = conditional(renderer, run) {
+            objects.bind(pass);
+            conditional.draw_box(pass, (id, query), object);
+        } else if !cursor.is_dropped(plan, query, object as usize) {
+            objects.bind(pass);
             objects.draw(pass, object);
         }
         pass.end_occlusion_query();
@@ -171,10 +216,9 @@ fn draw_boxes(renderer: &Renderer, pass: &mut wgpu::RenderPass<'_>, query: PassI
 }
 
 /// Returns the objects that a query has not dropped; `None` if the caller has set no objects.
-fn visible_objects(renderer: &Renderer, query: &str, cursor: &Cursor) -> Option<Vec<u32>> {
-    let count = renderer.objects.as_ref()?.boxes().len() as u32;
+fn visible_objects(renderer: &Renderer, query: PassId, cursor: &Cursor) -> Option<Vec<u32>> {
+    let count = renderer.objects.as_ref().filter(|_| renderer.conditional.is_none())?.boxes().len() as u32;
     let plan = renderer.plan();
-    let query = plan.pass_id(query)?;
     Some((0..count).filter(|object| !cursor.is_dropped(plan, query, *object as usize)).collect())
 }
 

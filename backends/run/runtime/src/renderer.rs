@@ -3,16 +3,18 @@
 //! Input: a device, a queue, shaders and settings. Output: frames to record ([`Renderer::begin`]), and the kept fragments, counters
 //! and times of a frame. Only [`Renderer::render`] submits commands.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use fragbuf_codegen::{Plan, SymbolId};
 use fragbuf_frame::{
-    LaggedValues, MemoryLimits, Readbacks, Values, host_sets_k, initial_values, pool_size_after, reserve,
+    Conditions, LaggedValues, MemoryLimits, Readbacks, Values, host_sets_k, initial_values, pool_size_after, reserve,
     reuse_pool_sizes, set_uniform, zero_uniforms,
 };
 
+use crate::conditional::ConditionalDraws;
+use crate::draws::SceneDraw;
 use crate::error_scope::in_error_scope;
 use crate::external::accept;
 use crate::frame_resources::{DeviceObjects, FrameResources, Timestamps};
@@ -24,7 +26,7 @@ use crate::queries::Queries;
 use crate::segment::FrameInputs;
 use crate::uniform_buffers::{IDENTITY, UniformBuffers};
 use crate::words::to_bytes;
-use crate::{Error, ObjectBox, Pipelines, PoolSize, Settings, Shaders, Value, VertexInputs};
+use crate::{Error, Pipelines, PoolSize, Settings, Shaders, Value, VertexInputs};
 
 /// Runs one plan on one device.
 pub struct Renderer {
@@ -42,17 +44,24 @@ pub struct Renderer {
     timestamps: Timestamps,
     uniform_buffers: UniformBuffers,
     uniforms: Vec<u32>,
+    /// The names of the uniforms that the caller has set.
+    set_uniforms: BTreeSet<String>,
     pub(crate) k: Option<u32>,
     /// The decisions of earlier frames that later ones use.
     pub(crate) lag: LaggedValues,
     /// The words that frames have copied for such decisions, the oldest first.
     pub(crate) reads: Mutex<VecDeque<FrameReads>>,
-    camera: Mutex<[f32; 16]>,
+    pub(crate) camera: Mutex<[f32; 16]>,
     /// The exchanges that the last frame left flipped.
     flipped: AtomicU32,
     pub(crate) queries: Option<Queries>,
     /// The caller's objects; `None`: the scene is one object, which is always drawn.
     pub(crate) objects: Option<Objects>,
+    pub(crate) conditions: Conditions,
+    /// The draws of the caller's scene; `None` until they are set.
+    pub(crate) draws: Option<Vec<SceneDraw>>,
+    /// The device's conditions; `None` if the host evaluates them, or the plan has none.
+    pub(crate) conditional: Option<ConditionalDraws>,
 }
 
 impl Renderer {
@@ -88,7 +97,7 @@ impl Renderer {
         let objects = DeviceObjects { device, queue, pipelines: set, uniforms: &uniform_buffers, timestamps, limits };
         let resources = FrameResources::new(&objects, values, None).await?;
         let queries = Queries::new(device, set.queries(0)).await?;
-        let renderer = Renderer {
+        let mut renderer = Renderer {
             device: device.clone(),
             queue: queue.clone(),
             pipelines: pipelines.clone(),
@@ -100,6 +109,7 @@ impl Renderer {
             timestamps,
             uniform_buffers,
             uniforms,
+            set_uniforms: BTreeSet::new(),
             k,
             lag: LaggedValues::new(&pipelines.0.plan, settings.decisions),
             reads: Mutex::new(VecDeque::new()),
@@ -107,9 +117,13 @@ impl Renderer {
             flipped: AtomicU32::new(0),
             queries,
             objects: None,
+            conditions: settings.conditions,
+            draws: None,
+            conditional: None,
         };
         renderer.set_camera(&IDENTITY);
         renderer.write_uniforms();
+        renderer.conditional = renderer.conditional_draws(0, &[]).await?;
         Ok(renderer)
     }
 
@@ -192,27 +206,19 @@ impl Renderer {
         self.queue.write_buffer(&self.uniform_buffers.camera, 0, &to_bytes(&view_projection.map(f32::to_bits)));
     }
 
-    /// Sets the boxes of the caller's objects, for passes that draw boxes or visible objects. The index of a box is the object's
-    /// number in [`Call::objects`](crate::Call::objects). Without boxes the scene is one object, which is always drawn. Boxes are drawn
-    /// with a margin of 1/64 of their greatest extent; those that the near plane clips and those below a pixel are never dropped.
-    pub async fn set_objects(&mut self, boxes: &[ObjectBox]) -> Result<(), Error> {
-        let count = u32::try_from(boxes.len()).unwrap_or(u32::MAX);
-        let queries = Queries::new(&self.device, self.pipeline_set().queries(count)).await?;
-        let inputs = &self.pipeline_set().inputs;
-        self.objects = match boxes.is_empty() {
-            true => None,
-            false => Some(Objects::new(&self.device, &self.queue, inputs, boxes).await?),
-        };
-        self.queries = queries;
-        self.frame_id += 1;
-        Ok(())
-    }
-
     /// Sets one of the description's uniforms, from the next submission on.
     pub fn set_uniform(&mut self, name: &str, value: Value) -> Result<(), Error> {
         set_uniform(&mut self.uniforms, &self.pipelines.0.plan.variant.uniforms, name, value)?;
+        self.set_uniforms.insert(name.to_owned());
         self.write_uniforms();
         Ok(())
+    }
+
+    /// Returns the names of the uniforms that [`set_uniform`](Renderer::set_uniform) has not set yet, in the order of the description.
+    /// They are 0.
+    pub fn unset_uniforms(&self) -> impl Iterator<Item = &str> {
+        let names = self.plan().variant.uniforms.iter().map(|uniform| uniform.name.value.as_str());
+        names.filter(|name| !self.set_uniforms.contains(*name))
     }
 
     /// Sets an external texture (`init: external` in the manifest) with its content. It needs the plan's format, the size of the
@@ -287,13 +293,6 @@ impl Renderer {
         self.flipped.store(flipped, Ordering::Relaxed);
     }
 
-    /// Whether no query of its box can decide whether an object is visible.
-    pub(crate) fn is_undecided(&self, object: &ObjectBox) -> bool {
-        let values = &self.resources.values;
-        let camera = self.camera.lock().unwrap_or_else(PoisonError::into_inner);
-        object.is_undecided(&camera, (values.width(), values.height()))
-    }
-
     /// Returns the pipelines and their plan.
     pub(crate) fn pipeline_set(&self) -> &PipelineSet {
         &self.pipelines.0
@@ -347,6 +346,7 @@ impl Renderer {
             values: self.current_values(),
             memory: &self.resources.memory,
             readbacks: self.frame_readbacks(),
+            conditions: self.conditions,
             flipped: self.flipped(),
             max_workgroups: self.device.limits().max_compute_workgroups_per_dimension,
         }

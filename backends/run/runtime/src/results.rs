@@ -2,7 +2,7 @@
 //! frame in the caller's encoder.
 
 use fragbuf_codegen::ResourceId;
-use fragbuf_frame::COUNTERS_RESOURCE;
+use fragbuf_frame::{COUNTERS_RESOURCE, LoopReport, loop_reports};
 
 use crate::texture::read_texture;
 use crate::{Counters, PassTime, Pending, Renderer};
@@ -25,6 +25,15 @@ impl Renderer {
     ) -> Option<Pending<T>> {
         let buffer = self.resources.slice_counters.as_ref().or_else(|| self.buffer(COUNTERS_RESOURCE))?;
         Some(Pending::record(&self.device, encoder, buffer, 0, buffer.size(), decode))
+    }
+
+    /// Records the readback of the reports on the frame's loops. Returns `None` if the host ends them
+    /// ([`Recorded::Finished`](crate::Recorded::Finished) has the reports then), and if no loop ends on a condition.
+    pub fn loop_reports(&self, encoder: &mut wgpu::CommandEncoder) -> Option<Pending<Vec<LoopReport>>> {
+        let (words, bytes) = self.conditional.as_ref()?.loop_words(self.plan());
+        let pipelines = self.pipelines.clone();
+        let decode = move |words: Vec<u32>| loop_reports(&pipelines.0.plan, &words);
+        (bytes > 0).then(|| Pending::record(&self.device, encoder, words, 0, bytes, decode))
     }
 
     /// Records the readback of the time of each pass of the finished frame. Returns `None` if passes are not timed.

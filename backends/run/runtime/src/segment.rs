@@ -4,7 +4,7 @@
 //! and all errors occur here, before anything is recorded.
 
 use fragbuf_codegen::{Plan, PlannedPass, ResourceId};
-use fragbuf_frame::{Cursor, FrameStep, HostWait, LoopReport, Readbacks, Values, unsupported};
+use fragbuf_frame::{Conditions, Cursor, FrameStep, HostWait, LoopReport, Readbacks, Values, unsupported};
 use fragbuf_templates::vocabulary::{Access, Kind};
 
 use crate::Error;
@@ -16,6 +16,7 @@ pub(crate) struct FrameInputs<'a> {
     pub(crate) values: Values,
     pub(crate) memory: &'a Memory,
     pub(crate) readbacks: Readbacks,
+    pub(crate) conditions: Conditions,
     /// The exchanges that the previous frame left flipped.
     pub(crate) flipped: u32,
     /// The device's limit on workgroups per dimension.
@@ -61,8 +62,8 @@ pub(crate) struct ActionRun {
 
 impl FrameCursor {
     /// Returns the beginning of a frame.
-    pub(crate) fn new(plan: &Plan, readbacks: Readbacks, flipped: u32) -> Self {
-        let cursor = Cursor::new(plan, readbacks, flipped);
+    pub(crate) fn new(plan: &Plan, readbacks: Readbacks, conditions: Conditions, flipped: u32) -> Self {
+        let cursor = Cursor::new(plan, readbacks, flipped).with_conditions(conditions);
         FrameCursor { slice: 0, cursor, loops: Vec::new(), flipped }
     }
 
@@ -70,7 +71,7 @@ impl FrameCursor {
         self.flipped = self.cursor.flipped(inputs.plan);
         self.cursor.loops().iter().for_each(|looped| looped.clone().merge_into(&mut self.loops));
         self.slice += 1;
-        self.cursor = Cursor::new(inputs.plan, inputs.readbacks, inputs.flipped);
+        self.cursor = Cursor::new(inputs.plan, inputs.readbacks, inputs.flipped).with_conditions(inputs.conditions);
     }
 }
 
@@ -98,6 +99,13 @@ fn action_run(inputs: &FrameInputs<'_>, slice: u32, step: FrameStep) -> Result<A
         let values = inputs.values.in_iteration(run.iteration);
         check_arguments(inputs, pass, run.flipped)?;
         groups = workgroups(inputs, pass, &values)?;
+        if run.conditional.is_some() && groups[2] > 1 {
+            let what = format!(
+                "`{}`, a pass with workgroups in three dimensions, in a loop that ends on the device",
+                pass.name
+            );
+            return Err(Error::Unsupported { what, help: "use `Conditions::OnHost`".to_owned() });
+        }
         if let Some(formula) = &pass.reference {
             reference = values.word(formula, "the stencil's reference of a pass")?;
         }

@@ -1,6 +1,6 @@
 //! The settings of a renderer.
 
-use fragbuf_frame::{DEFAULT_MEMORY, Decisions, Sizing};
+use fragbuf_frame::{Conditions, DEFAULT_MEMORY, Decisions, Sizing};
 
 /// The settings of a renderer. [`Settings::new`] has the defaults; every field may be changed.
 #[derive(Clone, Debug)]
@@ -15,6 +15,9 @@ pub struct Settings {
     pub sizing: Sizing,
     /// Whether frames wait for the decisions of host steps, or use those of earlier frames ([`crate::Renderer::decide`]).
     pub decisions: Decisions,
+    /// Who ends loops on their conditions and drops hidden objects. With [`Conditions::OnDevice`] no frame is suspended for them, and the
+    /// scene is drawn by [`Call::draw`](crate::Call::draw) from the draws of [`Renderer::set_draws`](crate::Renderer::set_draws).
+    pub conditions: Conditions,
     /// The rows of a slice. The frame is drawn slice by slice, and each slice draws the whole scene. `None`: as many rows as
     /// the device's limits and `memory` allow, which is the whole frame unless its buffers are too large.
     pub slice: Option<u32>,
@@ -76,6 +79,7 @@ impl Settings {
             height,
             sizing: Sizing::Auto,
             decisions: Decisions::Immediate,
+            conditions: Conditions::OnHost,
             slice: None,
             memory: DEFAULT_MEMORY,
             checks: Checks::Auto,

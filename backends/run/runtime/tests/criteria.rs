@@ -71,7 +71,9 @@ fn description(key: &str, criterion: &str) -> Option<Variant> {
 }
 
 fn set_uniforms(renderer: &mut Renderer) {
+    assert_eq!(renderer.unset_uniforms().collect::<Vec<_>>(), ["object", "plane"]);
     renderer.set_uniform("object", Value::U32(OBJECT)).unwrap();
+    assert_eq!(renderer.unset_uniforms().collect::<Vec<_>>(), ["plane"]);
     renderer.set_uniform("plane", Value::F32(PLANE)).unwrap();
 }
 

@@ -14,7 +14,7 @@ use crate::stage::{BACKGROUND, FORMAT, device, read_counters, renderer, techniqu
 const PEELED: [&str; 8] = ["k_peeling", "f2b", "f2b_ll", "f2b_2p", "f2b_3p", "dual", "dual_2p", "bun"];
 
 /// Returns quads whose depths are in the order of no axis. Three have the depth of another.
-fn scene() -> Vec<Quad> {
+pub(crate) fn scene() -> Vec<Quad> {
     let mut numbers = Numbers::seeded(11);
     let quad = |id: u32| Quad {
         x: [numbers.below(4), 5 + numbers.below(SIZE[0] - 4)],
@@ -26,7 +26,7 @@ fn scene() -> Vec<Quad> {
     (0..15).map(quad).collect()
 }
 
-fn boxes_around(quads: &[Quad]) -> Vec<ObjectBox> {
+pub(crate) fn boxes_around(quads: &[Quad]) -> Vec<ObjectBox> {
     let clip = |pixel: u32, axis: usize| 2.0 * pixel as f32 / SIZE[axis] as f32 - 1.0;
     let around = |quad: &Quad| ObjectBox {
         least: [clip(quad.x[0], 0), -clip(quad.y[1], 1), quad.depth],

@@ -7,7 +7,7 @@ use fragbuf_templates::Registry;
 
 use crate::stage::{settings, shaders, technique};
 
-fn device(features: wgpu::Features, limits: wgpu::Limits) -> (wgpu::Device, wgpu::Queue) {
+pub fn device(features: wgpu::Features, limits: wgpu::Limits) -> (wgpu::Device, wgpu::Queue) {
     let backends = wgpu::Backends::VULKAN;
     let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor { backends, ..descriptor });
@@ -20,7 +20,7 @@ fn device(features: wgpu::Features, limits: wgpu::Limits) -> (wgpu::Device, wgpu
 }
 
 /// Returns the result of a future of wgpu, which is ready at once on native devices.
-fn ready<T>(future: impl Future<Output = T>) -> T {
+pub fn ready<T>(future: impl Future<Output = T>) -> T {
     let mut context = std::task::Context::from_waker(std::task::Waker::noop());
     match std::pin::pin!(future).poll(&mut context) {
         std::task::Poll::Ready(value) => value,

@@ -73,6 +73,14 @@ impl Camera {
         Camera::framing_from(scenes, aspect, (direction.as_vec3().normalize(), up.as_vec3().normalize()), half_angle)
     }
 
+    /// Returns the view with the centre of the image magnified. Near and far planes stay.
+    pub fn magnified(mut self, factor: f64) -> Self {
+        for column in self.view_projection.chunks_exact_mut(4) {
+            column.iter_mut().take(2).for_each(|value| *value *= factor as f32);
+        }
+        self
+    }
+
     /// Returns a view from the direction that just fits all scenes. `direction` and `up` are unit vectors.
     fn framing_from(scenes: &[&Scene], aspect: f32, (direction, up): (Vec3, Vec3), half_angle: f32) -> Self {
         let objects = || scenes.iter().flat_map(|scene| &scene.objects);

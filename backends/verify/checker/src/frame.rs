@@ -150,7 +150,7 @@ impl<'s> Frame<'s> {
             }
             FrameStep::Wait(wait) => self.supply(wait)?,
             // The cursor of the checker waits for every decision.
-            FrameStep::Read(_) => {}
+            FrameStep::Read(_) | FrameStep::Condition(_) => {}
         }
         Ok(())
     }

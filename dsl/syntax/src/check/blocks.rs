@@ -11,6 +11,7 @@ use syn::spanned::Spanned;
 use super::checker::Checker;
 use super::given::source;
 use super::mismatch::quoted;
+use super::noted::Noted;
 use super::written_types::written_type;
 use crate::tree::{Block, Expr, Kind, Statement, VariableId};
 use crate::types::Type;
@@ -187,6 +188,7 @@ impl Checker<'_, '_, '_> {
         }
         let id = self.new_variable(&name, mutable, annotated, ty, &span);
         self.bind(id);
+        self.note(&span, || Noted::Variable(id));
         id
     }
 }

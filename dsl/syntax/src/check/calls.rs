@@ -9,13 +9,19 @@ use syn::spanned::Spanned;
 use super::checker::Checker;
 use super::given::{given, source_of_generics};
 use super::mismatch::quoted;
+use super::noted::{Noted, signature_of_constructor};
 use super::swizzles;
 use super::written_types::segments;
 use crate::foreign_functions::{self, Given};
+use crate::inspection::{NameKind, is_placeholder};
 use crate::methods::{self, Spelling};
 use crate::tree::{Expr, Kind, Use};
 use crate::types::Type;
 use crate::{foreign_names, unknown_name};
+
+/// The functions of the language.
+pub(super) const CONSTRUCTORS: [&str; 7] =
+    ["vec2", "vec3", "vec4", "Vec2::splat", "Vec3::splat", "Vec4::splat", "f32::from_bits"];
 
 type Arguments = syn::punctuated::Punctuated<syn::Expr, syn::Token![,]>;
 
@@ -31,7 +37,19 @@ impl Checker<'_, '_, '_> {
             return self.unsupported(span, "only named functions can be called", help);
         };
         let name_span = self.at(call.func.span());
+        if path.last().is_some_and(|name| is_placeholder(name)) {
+            match path.len() {
+                1 => self.candidates_for_value(),
+                _ => self.candidates_in(&path),
+            }
+            return Expr::error(span);
+        }
         let path: Vec<&str> = path.iter().map(String::as_str).collect();
+        if self.is_constructor(&path) {
+            let name = path.join("::");
+            let signature = signature_of_constructor(&name);
+            self.note(&name_span, || Noted::Known(NameKind::Function, name, signature));
+        }
         match path.as_slice() {
             [name] if self.shadows_function(name) => {
                 let message = format!("the variable `{name}` shadows the function `{name}`");
@@ -44,6 +62,11 @@ impl Checker<'_, '_, '_> {
             [owner, name] => self.associated(owner, name, &call.args, span, &name_span),
             _ => self.unknown_function(&path.join("::"), &call.args, span, &name_span),
         }
+    }
+
+    fn is_constructor(&self, path: &[&str]) -> bool {
+        let is_vector = matches!(path, [owner, "new"] if matches!(Type::from_rust(owner), Some(Type::Vector(_))));
+        self.report.has_names() && (is_vector || CONSTRUCTORS.contains(&path.join("::").as_str()))
     }
 
     fn shadows_function(&self, name: &str) -> bool {
@@ -95,6 +118,7 @@ impl Checker<'_, '_, '_> {
             return self.unknown_function(name, arguments, span, name_span);
         };
         let Some(helper) = environment.helpers.get(index) else { return Expr::error(span) };
+        self.note(name_span, || Noted::Helper(index));
         self.uses.push(Use::Helper(index, span.clone()));
         if arguments.len() != helper.parameters.len() {
             let (message, help) = argument_count(name, helper.parameters.len(), arguments.len());
@@ -170,16 +194,14 @@ impl Checker<'_, '_, '_> {
     /// Returns what to write instead of an unknown function: what another language's function is here, or else a function of the
     /// description.
     fn help_for_function(&self, name: &str, given: &[Given], foreign: Option<String>) -> String {
-        const KNOWN: [&str; 7] =
-            ["vec2", "vec3", "vec4", "Vec2::splat", "Vec3::splat", "Vec4::splat", "f32::from_bits"];
         let last = last_segment(name);
         let helpers: Vec<&str> = self.environment.helpers.iter().map(|helper| helper.name.as_str()).collect();
         let arguments: Vec<&str> = given.iter().map(|argument| argument.source.as_str()).collect();
         let call = format!("{last}({})", arguments.join(", "));
-        if last != name && (helpers.contains(&last) || KNOWN.contains(&last)) {
+        if last != name && (helpers.contains(&last) || CONSTRUCTORS.contains(&last)) {
             return format!("it is called without a path: write `{call}`");
         }
-        let nearest = nearest_name(name, &[&helpers[..], &KNOWN].concat()).map(str::to_owned);
+        let nearest = nearest_name(name, &[&helpers[..], &CONSTRUCTORS].concat()).map(str::to_owned);
         let of_path = || foreign_functions::associated(name, given).filter(|_| last != name);
         if let Some(instead) = foreign.or_else(of_path) {
             return instead;
@@ -212,6 +234,10 @@ impl Checker<'_, '_, '_> {
         let receiver = self.expr(&call.receiver, None);
         let name = call.method.to_string();
         let name_span = self.at(call.method.span());
+        if is_placeholder(&name) {
+            self.candidates_of(receiver.ty);
+            return Expr::error(span);
+        }
         let arguments: Vec<&syn::Expr> = call.args.iter().collect();
         match self.inference.resolve(receiver.ty) {
             Type::Error => {
@@ -236,6 +262,8 @@ impl Checker<'_, '_, '_> {
         name_span: &SourceSpan,
     ) -> Expr {
         if let Some(size) = swizzle_size(ty, name) {
+            let signature = || format!("fn {name}(self: {}) -> Vec{size}", ty.rust());
+            self.note(name_span, || Noted::Known(NameKind::Component, name.to_owned(), signature()));
             self.require_count(name, 0, arguments.len(), &span);
             return Expr::new(Kind::Components(Box::new(receiver), name.to_string()), Type::Vector(size), span);
         }
@@ -245,6 +273,7 @@ impl Checker<'_, '_, '_> {
             self.unknown_method(ty, name, &all, name_span);
             return Expr::error(span);
         };
+        self.note(name_span, || Noted::Method(row, ty));
         self.require_count(name, row.parameters.len(), arguments.len(), &span);
         let mut all = vec![receiver];
         for (argument, parameter) in arguments.iter().zip(row.parameters) {

@@ -7,6 +7,7 @@ use fragbuf_model::{SourceSpan, Spanned, codes};
 use proc_macro2::Span;
 
 use super::literal_variables::LiteralVariable;
+use super::noted::Noted;
 use crate::environment::Environment;
 use crate::infer::Inference;
 use crate::report::Report;
@@ -40,6 +41,8 @@ pub(super) struct Checker<'e, 'r, 'p> {
     pub literal_variables: Vec<LiteralVariable>,
     /// Whether the function uses a name whose declaration has an error.
     pub lacks_declaration: bool,
+    /// The names of the function with their spans, if the report collects names.
+    pub noted: Vec<(SourceSpan, Noted)>,
 }
 
 /// An integer literal.
@@ -70,6 +73,7 @@ impl<'e, 'r, 'p> Checker<'e, 'r, 'p> {
             lets: Vec::new(),
             literal_variables: Vec::new(),
             lacks_declaration: false,
+            noted: Vec::new(),
         }
     }
 

@@ -9,6 +9,8 @@ use super::checker::Checker;
 use super::declared_names::Place;
 use super::given::source_of_operand;
 use super::mismatch::quoted;
+use super::noted::Noted;
+use crate::inspection::{NameKind, is_placeholder};
 use crate::tree::{Expr, Kind, Use};
 use crate::types::Type;
 use crate::{foreign_names, methods};
@@ -24,6 +26,10 @@ impl Checker<'_, '_, '_> {
             syn::Member::Named(name) => syn::ext::IdentExt::unraw(name).to_string(),
             syn::Member::Unnamed(index) => index.index.to_string(),
         };
+        if is_placeholder(&name) {
+            self.candidates_of(base.ty);
+            return Expr::error(span);
+        }
         match self.inference.resolve(base.ty) {
             Type::Error => Expr::error(span),
             Type::Fragment => self.attribute(base, name, span, &name_span),
@@ -58,6 +64,7 @@ impl Checker<'_, '_, '_> {
             self.report.error(codes::UNKNOWN_FIELD, name_span, format!("no attribute `{name}` on a fragment"), help);
             return Expr::error(span);
         };
+        self.note(name_span, || Noted::Attribute(name.clone(), *ty));
         self.uses.push(Use::Attribute(name.clone()));
         Expr::new(Kind::Attribute(Box::new(base), name), *ty, span)
     }
@@ -71,6 +78,7 @@ impl Checker<'_, '_, '_> {
             self.report.error(codes::UNKNOWN_FIELD, name_span, format!("cannot find uniform `{name}`"), help);
             return Expr::error(span);
         };
+        self.note(name_span, || Noted::Uniform(name.clone(), *ty));
         self.uses.push(Use::Uniform(name.clone()));
         Expr::new(Kind::Uniform(name), *ty, span)
     }
@@ -78,6 +86,7 @@ impl Checker<'_, '_, '_> {
     fn component(&mut self, base: Expr, size: u8, name: String, span: SourceSpan, name_span: &SourceSpan) -> Expr {
         let exists = |letter: &str| COMPONENTS.iter().take(usize::from(size)).any(|component| *component == letter);
         if exists(&name) {
+            self.note(name_span, || Noted::Known(NameKind::Component, name.clone(), format!("{name}: f32")));
             return Expr::new(Kind::Components(Box::new(base), name), Type::F32, span);
         }
         let letters = COMPONENTS.get(..usize::from(size)).unwrap_or_default();

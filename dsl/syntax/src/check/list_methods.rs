@@ -6,12 +6,25 @@ use fragbuf_model::{SourceSpan, codes, nearest_name};
 
 use super::checker::Checker;
 use super::given::{source, source_of_operand};
+use super::noted::Noted;
+use crate::inspection::NameKind;
 use crate::tree::{Expr, Kind, Operator};
 use crate::types::Type;
+
+/// The methods of the list: name and signature.
+pub(super) const LIST_METHODS: [(&str, &str); 3] = [
+    ("len", "fn len(self) -> usize"),
+    ("is_empty", "fn is_empty(self) -> bool"),
+    ("iter", "fn iter(self), in the head of a `for` loop"),
+];
 
 impl Checker<'_, '_, '_> {
     pub(super) fn list_method(&mut self, call: &syn::ExprMethodCall, span: SourceSpan, name_span: &SourceSpan) -> Expr {
         let name = call.method.to_string();
+        if let Some((name, signature)) = LIST_METHODS.iter().find(|(known, _)| *known == name) {
+            let known = || Noted::Known(NameKind::Method, (*name).to_owned(), (*signature).to_owned());
+            self.note(name_span, known);
+        }
         match name.as_str() {
             "len" => {
                 self.require_count(&name, 0, call.args.len(), &span);

@@ -18,6 +18,7 @@ mod literal_variables;
 mod literals;
 mod loops;
 mod mismatch;
+mod noted;
 mod operators;
 mod paths;
 mod swizzles;
@@ -33,6 +34,7 @@ use crate::report::{FIRST, Report};
 use crate::tree::{Block, Function, VariableId};
 use crate::types::Type;
 use checker::Checker;
+use noted::Noted;
 
 pub(crate) use written_types::written_type;
 
@@ -47,6 +49,7 @@ pub(crate) fn function(raw: RawFunction, environment: &Environment, report: &mut
     checker.written_result(&raw);
     let body = checker.body(&raw.body);
     checker.check_numbers();
+    checker.report_names();
     let unused = checker.unused();
     let Checker { inference, variables, uses, lacks_declaration, .. } = checker;
     let name = raw.role.wgsl_name();
@@ -130,8 +133,9 @@ impl Checker<'_, '_, '_> {
     fn declare_parameter(&mut self, parameter: &RawParameter, ty: Type) -> VariableId {
         let name = parameter.name.as_ref().map_or("_", |name| name.value.as_str());
         let id = self.new_variable(name, parameter.mutable, true, ty, &parameter.span);
-        if parameter.name.is_some() {
+        if let Some(name) = &parameter.name {
             self.bind(id);
+            self.note(&name.span, || Noted::Variable(id));
         }
         id
     }

@@ -7,9 +7,11 @@ use syn::spanned::Spanned;
 
 use super::checker::Checker;
 use super::declared_names::Place;
+use super::noted::Noted;
 use super::written_types::segments;
 use crate::constants::{self, Constant};
 use crate::foreign_names;
+use crate::inspection::{NameKind, is_placeholder};
 use crate::tree::{Expr, Kind};
 use crate::types::Type;
 
@@ -27,8 +29,13 @@ impl Checker<'_, '_, '_> {
     }
 
     fn name(&mut self, name: &str, span: SourceSpan) -> Expr {
+        if is_placeholder(name) {
+            self.candidates_for_value();
+            return Expr::error(span);
+        }
         if let Some(id) = self.lookup(name) {
             self.count_read(id);
+            self.note(&span, || Noted::Variable(id));
             let ty = self.variables.get(id).map_or(Type::Error, |variable| variable.ty);
             return Expr::new(Kind::Variable(id), ty, span);
         }
@@ -46,7 +53,15 @@ impl Checker<'_, '_, '_> {
 
     fn constant(&mut self, path: &[String], span: SourceSpan) -> Expr {
         match constants::find(path) {
-            Some(constant) => constant_expr(&constant, span),
+            Some(constant) => {
+                let signature = || format!("const {}: {}", path.join("::"), constant.rust());
+                self.note(&span, || Noted::Known(NameKind::Constant, path.join("::"), signature()));
+                constant_expr(&constant, span)
+            }
+            None if path.last().is_some_and(|name| is_placeholder(name)) => {
+                self.candidates_in(path);
+                Expr::error(span)
+            }
             None => self.unknown_constant(path, span),
         }
     }

@@ -5,6 +5,8 @@
 use fragbuf_model::{SourceSpan, codes};
 use syn::spanned::Spanned;
 
+use super::noted::candidates_for_type;
+use crate::inspection::is_placeholder;
 use crate::report::Report;
 use crate::types::Type;
 use crate::{foreign_names, unknown_name};
@@ -45,6 +47,10 @@ fn unsupported_type(span: &SourceSpan, report: &mut Report) -> Type {
 }
 
 fn named_type(name: &str, span: &SourceSpan, report: &mut Report) -> Type {
+    if is_placeholder(name) {
+        candidates_for_type(report);
+        return Type::Error;
+    }
     if let Some(found) = Type::from_rust(name) {
         return found;
     }

@@ -14,7 +14,7 @@ use crate::raw_function::Role;
 use crate::report::{Report, Stop};
 
 /// The keywords that start an item.
-const KEYWORDS: [&str; 6] = ["fragment", "uniform", "keep", "where", "resolve", "fn"];
+pub(crate) const KEYWORDS: [&str; 6] = ["fragment", "uniform", "keep", "where", "resolve", "fn"];
 
 /// Words that users write for items, and how the language has them.
 const SYNONYMS: &[(&[&str], &str)] = &[

@@ -18,6 +18,7 @@ mod syntax_error;
 pub(crate) use choices::all_alternatives as alternatives;
 pub(crate) use choices::from_builder as choice_from_builder;
 pub(crate) use closures::{whole_closure, whole_helper};
+pub(crate) use items::KEYWORDS;
 
 use fragbuf_model::{Diagnostic, SourceSpan, Spanned, codes, nearest_name};
 use proc_macro2::{Group, TokenStream, TokenTree};

@@ -3,7 +3,9 @@
 
 use fragbuf_cpu::FragmentOrder;
 
-use crate::cli::figure::experiment::{Expected, Experiment, ImageClaim, Images, Kind, Series, Triangles, Variant};
+use crate::cli::figure::experiment::{
+    Expected, Experiment, ImageClaim, Images, Kind, Series, Shown, Triangles, Variant,
+};
 
 pub(super) const ROW: Experiment = Experiment {
     name: "b06-fig-3",
@@ -15,6 +17,7 @@ pub(super) const ROW: Experiment = Experiment {
         side: 220,
         order: FragmentOrder::Window { seed: 1, triangles: 256 },
         variants: &VARIANTS,
+        shown: Shown::Differences,
         claims: &CLAIMS,
     }),
 };

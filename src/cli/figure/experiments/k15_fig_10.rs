@@ -3,7 +3,9 @@
 
 use fragbuf_cpu::FragmentOrder;
 
-use crate::cli::figure::experiment::{Expected, Experiment, ImageClaim, Images, Kind, Series, Triangles, Variant};
+use crate::cli::figure::experiment::{
+    Expected, Experiment, ImageClaim, Images, Kind, Series, Shown, Triangles, Variant,
+};
 
 pub(super) const ROW: Experiment = Experiment {
     name: "k15-fig-10",
@@ -15,6 +17,7 @@ pub(super) const ROW: Experiment = Experiment {
         side: 220,
         order: FragmentOrder::Shuffled(1),
         variants: &VARIANTS,
+        shown: Shown::Differences,
         claims: &CLAIMS,
     }),
 };

@@ -7,6 +7,7 @@ mod c15_fig_1;
 mod d13_fig_10;
 mod d13_fig_11;
 mod d13_fig_13;
+mod d13_fig_4;
 mod d13_fig_7;
 mod d13_fig_8;
 mod d13_fig_9;
@@ -28,7 +29,7 @@ mod peers;
 use super::experiment::Experiment;
 
 /// All experiments, in the order of `figure --list`.
-pub(super) const EXPERIMENTS: [Experiment; 24] = [
+pub(super) const EXPERIMENTS: [Experiment; 25] = [
     k15_table_1::ROW,
     k15_fig_1::ROW,
     k15_fig_3::ROW,
@@ -42,6 +43,7 @@ pub(super) const EXPERIMENTS: [Experiment; 24] = [
     k15_sec_5_1_2::ROW,
     c15_fig_1::ROW,
     d13_table_1::ROW,
+    d13_fig_4::ROW,
     d13_fig_7::ROW,
     d13_fig_8::ROW,
     d13_fig_9::ROW,

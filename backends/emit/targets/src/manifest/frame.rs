@@ -1,18 +1,21 @@
 //! Writes the `steps` of a manifest: one JSON object per command of the lowered frame, in order. A loop is a pair of steps that
 //! refer to each other by index.
 
-use fragbuf_codegen::{Action, Command, Decision, LoopId, LoopUntil, Parity, Plan, PlannedPass, Range, ResourceId};
+use fragbuf_codegen::{
+    Action, Command, Decision, LoopId, LoopUntil, Parity, Plan, PlannedPass, Quantity, Range, ResourceId, SymbolId,
+};
 use fragbuf_templates::vocabulary::{
     Access, Blend, Compare, DepthState, Element, Kind, Objects, State, StencilOperation, StencilState,
 };
 use serde_json::{Map, Value, json};
 
-use super::texel;
+use super::resources::texel;
+use super::{Context, bindings};
 use crate::names::kebab_case;
 
 /// Returns the steps of a frame.
-pub(super) fn steps(plan: &Plan) -> Value {
-    plan.frame.commands.iter().map(|command| step(plan, command)).collect()
+pub(super) fn steps(context: &Context<'_>) -> Value {
+    context.plan.frame.commands.iter().map(|command| step(context, command)).collect()
 }
 
 /// Returns the pairs of resources that the frame exchanges, and whether each is exchanged at the end of the frame.
@@ -25,9 +28,14 @@ fn name(plan: &Plan, id: ResourceId) -> &str {
     &plan.resources[id.0].resource.name
 }
 
-fn step(plan: &Plan, command: &Command) -> Value {
+fn step(context: &Context<'_>, command: &Command) -> Value {
+    let Context { plan, .. } = *context;
     let mut step = match &command.action {
-        Action::Pass(id) => pass_json(&plan.passes[id.0]),
+        Action::Pass(id) => {
+            let mut step = pass_json(&plan.passes[id.0]);
+            bindings::insert(context, id.0, &mut step);
+            step
+        }
         Action::Clear { resource, value } => object(clear(plan, *resource, *value)),
         Action::Copy { from, to } => object(json!({ "do": "copy", "from": name(plan, *from), "to": name(plan, *to) })),
         Action::Host(decision) => object(host(plan, decision)),
@@ -130,10 +138,14 @@ fn pass_json(pass: &PlannedPass) -> Map<String, Value> {
     }
     if !pass.constants.is_empty() {
         let constants = pass.constants.iter().map(|(name, value)| (name.clone(), Value::from(*value)));
-        map.insert("constants".into(), constants.collect::<Map<_, _>>().into());
+        map.insert("text_constants".into(), constants.collect::<Map<_, _>>().into());
     }
     map.insert("uses".into(), uses.into());
     map.insert("state".into(), state(&pass.state));
+    let changing = per_iteration(pass);
+    if !changing.is_empty() {
+        map.insert("per_iteration".into(), changing.into());
+    }
     match &pass.objects {
         Objects::All => {}
         Objects::Boxes => {
@@ -146,7 +158,20 @@ fn pass_json(pass: &PlannedPass) -> Map<String, Value> {
     map
 }
 
-fn access(access: Access) -> &'static str {
+/// Returns the members of a pass whose formulas have another value in each iteration of the loop around it.
+fn per_iteration(pass: &PlannedPass) -> Vec<&'static str> {
+    let changes = |quantity: &Quantity| quantity.mentions(SymbolId::ITERATION);
+    let members = [
+        ("groups", pass.groups.iter().any(changes)),
+        ("state.stencil.reference", pass.reference.as_ref().is_some_and(changes)),
+        ("state.samples.count", pass.samples.as_ref().is_some_and(|[count, _]| changes(count))),
+        ("state.samples.mask", pass.samples.as_ref().is_some_and(|[_, mask]| changes(mask))),
+    ];
+    members.into_iter().filter(|(_, changes)| *changes).map(|(name, _)| name).collect()
+}
+
+/// Returns the name of an access.
+pub(crate) fn access(access: Access) -> &'static str {
     match access {
         Access::Read => "read",
         Access::Plain => "plain",
@@ -193,12 +218,12 @@ fn stencil_operation(operation: StencilOperation) -> String {
     kebab_case(&format!("{operation:?}"))
 }
 
-/// Returns blending as the factors and the operation that every API has.
+/// Returns blending as the factors and the operation that every API has, for colour and alpha alike, in the words of WebGPU; `null`: off.
 fn blend(blend: Blend) -> Value {
     let (source, destination, operation) = match blend {
-        Blend::Replace => ("one", "zero", "add"),
-        Blend::Over => ("one", "one-minus-source-alpha", "add"),
-        Blend::Under => ("one-minus-destination-alpha", "one", "add"),
+        Blend::Replace => return Value::Null,
+        Blend::Over => ("one", "one-minus-src-alpha", "add"),
+        Blend::Under => ("one-minus-dst-alpha", "one", "add"),
         Blend::Max => ("one", "one", "max"),
         Blend::Min => ("one", "one", "min"),
         Blend::Add => ("one", "one", "add"),

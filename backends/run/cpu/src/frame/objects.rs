@@ -5,6 +5,7 @@
 
 use std::ops::Range;
 
+use fragbuf_codegen::PassId;
 use fragbuf_frame::{box_around, box_vertices, grown_box};
 
 use super::Frame;
@@ -13,10 +14,17 @@ impl Frame<'_> {
     /// Returns the objects that the query `name` has not dropped.
     pub(super) fn objects(&self, name: &str) -> Vec<Range<u32>> {
         let plan = &self.code.plan;
-        let is_dropped =
-            |number: usize| plan.pass_id(name).is_some_and(|query| self.cursor.is_dropped(plan, query, number));
+        let is_dropped = |number: usize| plan.pass_id(name).is_some_and(|query| self.is_dropped(query, number));
         let all = self.mesh_objects().into_iter().enumerate();
         all.filter(|(number, _)| !is_dropped(*number)).map(|(_, object)| object).collect()
+    }
+
+    /// Whether a query has dropped an object in this slice.
+    pub(super) fn is_dropped(&self, query: PassId, object: usize) -> bool {
+        let plan = &self.code.plan;
+        let first = plan.pass_id(&plan.passes[query.0].name).unwrap_or(query);
+        let on_device = self.conditions.dropped.get(&first).and_then(|dropped| dropped.get(object));
+        self.cursor.is_dropped(plan, query, object) || on_device.is_some_and(|dropped| *dropped)
     }
 
     /// Returns all objects; a mesh without objects is one object.

@@ -120,7 +120,7 @@ impl Frame<'_> {
         let stride = vertices::stride(stages.0);
         for (number, object) in self.mesh_objects().iter().enumerate() {
             visible.push(1);
-            let is_queried = !self.cursor.is_dropped(&self.code.plan, query, number);
+            let is_queried = !self.is_dropped(query, number);
             let Some(corners) = self.corners(object, stride).filter(|_| is_queried) else { continue };
             let transformed = vertices::run((stages.0, &empty.vertex.1), &corners, (BOX_CORNERS, 0), empty.lanes);
             let transformed = transformed.map_err(|error| self.draw_error(query, stages, 0, 0, error))?;

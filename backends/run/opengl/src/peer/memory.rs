@@ -6,7 +6,8 @@ use std::ptr::from_ref;
 use glow::HasContext as _;
 
 use super::description::MemoryDescription;
-use crate::{Context, Error};
+use crate::Error;
+use crate::api::Desktop;
 
 /// A buffer or an image, where it is bound, and the value at the begin of a frame.
 pub struct PeerMemory {
@@ -119,7 +120,7 @@ impl PeerMemory {
     }
 
     /// Sets the value at the begin of a frame.
-    pub fn clear(&self, context: &Context) {
+    pub fn clear(&self, desktop: &Desktop) {
         let Some(Value(words)) = self.clear else { return };
         let data: *const c_void = from_ref(&words).cast();
         // SAFETY: the context is current, and the data are a texel of the format.
@@ -127,14 +128,14 @@ impl PeerMemory {
             match (&self.kind, self.buffer) {
                 (Kind::Image { format, .. }, Some(buffer)) => {
                     let Format { internal, channels, kind, .. } = *format;
-                    (context.clear_buffer)(buffer.0.get(), internal, channels, kind, data);
+                    (desktop.clear_buffer)(buffer.0.get(), internal, channels, kind, data);
                 }
                 (Kind::Image { texture, format, .. }, None) => {
-                    (context.clear_texture)(texture.0.get(), 0, format.channels, format.kind, data);
+                    (desktop.clear_texture)(texture.0.get(), 0, format.channels, format.kind, data);
                 }
                 (_, Some(buffer)) => {
                     let (channels, kind) = (glow::RED_INTEGER, glow::UNSIGNED_INT);
-                    (context.clear_buffer)(buffer.0.get(), glow::R32UI, channels, kind, data);
+                    (desktop.clear_buffer)(buffer.0.get(), glow::R32UI, channels, kind, data);
                 }
                 (_, None) => {}
             }

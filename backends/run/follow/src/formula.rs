@@ -5,13 +5,17 @@ use crate::Error;
 
 /// Returns the value of a formula. `symbol` returns the value of a symbol, or `None` if it has none.
 pub fn evaluate(formula: &str, symbol: &dyn Fn(&str) -> Option<u64>) -> Result<u64, Error> {
-    let mut parser = Parser { rest: formula, symbol };
+    let mut parser = Parser { rest: formula, depth: 0, symbol };
     let value = parser.sum().filter(|_| parser.rest.trim().is_empty());
     value.ok_or_else(|| Error(format!("the formula `{formula}` has no value")))
 }
 
+/// The greatest depth of parentheses. A manifest from anywhere must not exhaust the stack.
+const DEEPEST: u32 = 64;
+
 struct Parser<'a> {
     rest: &'a str,
+    depth: u32,
     symbol: &'a dyn Fn(&str) -> Option<u64>,
 }
 
@@ -43,6 +47,13 @@ impl<'a> Parser<'a> {
     }
 
     fn factor(&mut self) -> Option<u64> {
+        self.depth += 1;
+        let value = if self.depth > DEEPEST { None } else { self.operand() };
+        self.depth -= 1;
+        value
+    }
+
+    fn operand(&mut self) -> Option<u64> {
         if self.takes('(') {
             let value = self.sum()?;
             return self.takes(')').then_some(value);
@@ -88,5 +99,22 @@ impl<'a> Parser<'a> {
             }
             None => false,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::evaluate;
+
+    #[test]
+    fn formulas_have_values_or_are_errors() {
+        let symbol = |name: &str| (name == "width").then_some(13);
+        assert_eq!(evaluate("ceil_div(width, 4) * (2 + max(1, 3)) - 1", &symbol).ok(), Some(19));
+        for wrong in ["height", "1 - 2", "1 / 0", "(1", "min(1)", "1 1", "", "pow2(64)", "18446744073709551615 + 1"] {
+            assert!(evaluate(wrong, &symbol).is_err(), "{wrong}");
+        }
+        let nested = |depth: usize| format!("{}1{}", "(".repeat(depth), ")".repeat(depth));
+        assert_eq!(evaluate(&nested(60), &symbol).ok(), Some(1));
+        assert!(evaluate(&nested(1_000_000), &symbol).is_err());
     }
 }

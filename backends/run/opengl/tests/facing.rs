@@ -1,0 +1,61 @@
+//! The image is turned upside down on its way, and front faces stay front faces.
+
+use fragbuf_codegen::Form;
+use fragbuf_model::{Draft, SourceSpan, check};
+use fragbuf_opengl_host::{Api, Object, Scene};
+use fragbuf_templates::Registry;
+use fragbuf_templates::vocabulary::{Blend, Capability, KeepDefault, Pass, Row, Step, Technique, Template};
+
+use crate::draw::{context, generated, host};
+use crate::technique::IDENTITY;
+
+const FACING: &str = "
+@fragment
+fn facing(inputs: FragmentInput, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    return vec4<f32>(select(0.25, 0.75, front), inputs.position.y, inputs.position.z, 1.0);
+}
+";
+
+fn registry() -> Registry {
+    let skeleton = Row {
+        template: Some(Template::new("pass/facing.wgsl".to_owned(), FACING.to_owned())),
+        ..Row::new("pass", "facing", "", "")
+    };
+    let storage = Row {
+        steps: vec![Step::Pass(Pass::geometry("facing", "facing").target("output", Blend::Replace))],
+        provides: vec![Capability::KeepsAll, Capability::FixedFunction, Capability::Sorted],
+        ..Row::new("storage", "tested", "", "")
+    };
+    let choices = vec![("storage", "tested"), ("sync", "as_it_comes")];
+    let keep = KeepDefault::All;
+    let technique = Technique { key: "tested".to_owned(), title: "", paper: "", summary: "", keep, choices };
+    let registry = Registry::builtin().with(storage).with(Row::new("sync", "as_it_comes", "", ""));
+    registry.with_technique(technique).with(skeleton)
+}
+
+/// A triangle that is counterclockwise as it is seen is a front face (WebGPU, `frontFace`), its upper rows are the first of the
+/// image, and the position of a fragment counts from them.
+#[test]
+fn front_faces_and_rows_are_those_of_webgpu() {
+    let registry = registry();
+    let draft = Draft::from_technique("tested", &SourceSpan::new("tested", 1, 1));
+    let variant = check(&draft, &registry).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
+    // The upper half of the frame, counterclockwise, and the lower half, clockwise.
+    let half = |[left, first, right, last]: [f32; 4], depth: f32| {
+        [[left, first], [left, last], [right, last], [left, first], [right, last], [right, first]]
+            .map(|[x, y]| [x, y, depth, 0.0, 0.0, 0.0, 0.0])
+    };
+    let vertices = [half([-1.0, 1.0, 1.0, 0.0], 0.25), half([-1.0, -1.0, 1.0, 0.0], 0.5)];
+    let vertices: Vec<u8> = vertices.iter().flatten().flatten().flat_map(|value| value.to_le_bytes()).collect();
+    let objects = [Object { first: 0, count: 12, bounds: [[-1.0, -1.0, 0.0], [1.0, 1.0, 1.0]] }];
+    let scene = Scene { vertices: &vertices, objects: &objects, view_projection: IDENTITY };
+    for api in [Api::OpenGl, Api::OpenGlEs] {
+        let context = context(api);
+        let generation = generated(api, Form::Program, &variant, &registry).unwrap_or_else(|why| panic!("{why}"));
+        let mut host = host(&context, &generation, [1, 4]).unwrap_or_else(|error| panic!("{error}"));
+        let image = host.render(&scene, [0.0; 4]).unwrap_or_else(|error| panic!("{error}"));
+        let expected = [[0.75, 0.5, 0.25], [0.75, 1.5, 0.25], [0.25, 2.5, 0.5], [0.25, 3.5, 0.5]];
+        let seen: Vec<[f32; 3]> = image.pixels.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect();
+        assert_eq!(seen, expected, "{api}");
+    }
+}

@@ -1,0 +1,184 @@
+//! Draws every technique and every row, and compares each pixel.
+
+use fragbuf_codegen::{Arrival, Plan, SymbolId};
+use fragbuf_model::Variant;
+use fragbuf_templates::Registry;
+use fragbuf_vulkan_host::{Context, Error, Host, Validation};
+
+use crate::cpu_image::is_exact;
+use crate::numbers::Numbers;
+use crate::scene::{Quad, first_difference, quads};
+use crate::stage::{Generated, context, draw, inputs, technique};
+use crate::technique::{is_parallel, k_of, on_cpu, reference, variant};
+
+/// The width and height of each frame, and the rows of its slices: odd and even sizes, a single pixel, a single row
+/// and column.
+const FRAMES: [([u32; 2], Option<u32>); 6] =
+    [([13, 7], None), ([13, 7], Some(3)), ([1, 1], None), ([31, 1], None), ([1, 9], Some(2)), ([37, 23], None)];
+
+/// Returns a number per pixel for each texture that the engine supplies.
+fn external(plan: &Plan, [width, height]: [u32; 2]) -> Vec<(String, Vec<f32>)> {
+    let external = plan.resources.iter().filter(|planned| planned.is_external());
+    let texels = || (0..width * height).map(|pixel| (pixel * 7 % 16) as f32 / 16.0 + 1.0 / 32.0).collect();
+    external.map(|planned| (planned.resource.name.clone(), texels())).collect()
+}
+
+/// Returns the expected image: that of the reference where it applies, or that of the CPU device.
+fn expected(plan: &Plan, host: &Host<'_>, quads: &[Quad], k: Option<u32>, size: [u32; 2]) -> Vec<[f64; 3]> {
+    let textures = external(plan, size);
+    let reference = if textures.is_empty() { reference(plan, quads, k, size) } else { None };
+    reference.unwrap_or_else(|| on_cpu(plan, &inputs(host), &textures, (quads, size)))
+}
+
+/// Draws a variant in frames, each in several drawing orders, and compares. Fails with what the device lacks.
+pub fn compare(
+    context: &Context,
+    what: &str,
+    (variant, k): (&Variant, Option<u32>),
+    frames: &[([u32; 2], Option<u32>)],
+    orders: usize,
+) -> Result<(), Error> {
+    let generated = Generated::of(variant, &Registry::builtin());
+    let plan = &generated.plan;
+    let mut host = match generated.host(context, frames[0].0) {
+        Err(error) if error.to_string().contains(" lacks ") => return Err(error),
+        host => host.unwrap_or_else(|error| panic!("{what}: {error}")),
+    };
+    if is_parallel(&context.name) && plan.arrival() == Arrival::Race {
+        println!("{what}: not compared, because races change its image on {}", context.name);
+        return Ok(());
+    }
+    for (size, rows) in frames {
+        host.resize(*size).unwrap();
+        host.set_rows(*rows).unwrap();
+        for (name, texels) in external(plan, *size) {
+            let bytes: Vec<u8> = texels.iter().flat_map(|texel| texel.to_le_bytes()).collect();
+            host.set_texture(&name, &bytes).unwrap_or_else(|error| panic!("{what}: {error}"));
+        }
+        let mut numbers = Numbers::seeded(u64::from(size[0]));
+        let mut quads = quads(9, *size, &mut numbers);
+        for order in 0..orders {
+            let seen = draw(&mut host, &quads, *size).unwrap_or_else(|error| panic!("{what}, {size:?}: {error}"));
+            let expected = expected(plan, &host, &quads, k, *size);
+            if let Some(difference) = first_difference(&seen.pixels, &expected) {
+                panic!("{what}, {size:?}, slices of {rows:?} rows, order {order}: {difference}: {quads:?}");
+            }
+            let may_lose = !is_exact(plan) || plan.hazards.iter().any(|hazard| hazard.permits.shows());
+            assert!(may_lose || seen.lost == 0, "{what}: {:?}", seen.counters);
+            numbers.shuffle(&mut quads);
+        }
+    }
+    drop(host);
+    context.check().unwrap_or_else(|error| panic!("{what}: {error}"));
+    Ok(())
+}
+
+/// Extensions that no software driver has, and features that some lack.
+const LACKING: [&str; 2] = ["`VK_EXT_fragment_shader_interlock`", "`shaderBufferInt64Atomics`"];
+
+/// Every technique in every frame. Those that need what the device lacks say so.
+#[test]
+fn every_technique() {
+    let context = context(Validation::On);
+    println!("driver: {}", context.name);
+    let mut left_out = Vec::new();
+    for row in Registry::builtin().techniques() {
+        if let Err(error) = compare(&context, &row.key, (&technique(row), k_of(row)), &FRAMES, 3) {
+            assert!(LACKING.iter().any(|name| error.to_string().contains(name)), "{}: {error}", row.key);
+            left_out.push(format!("{}: {error}", row.key));
+        }
+    }
+    println!("left out: {left_out:?}");
+    // Three techniques need interlock, and one 64-bit atomic operations.
+    assert!(left_out.len() <= 4, "{left_out:?}");
+}
+
+/// The synchronisation checks of the layer report nothing: every technique, one frame each. They do not see every conflict.
+#[test]
+fn every_technique_with_synchronization_validation() {
+    let context = context(Validation::Synchronization);
+    let frames = [([13, 7], None)];
+    let run = |row| compare(&context, "synchronization", (&technique(row), k_of(row)), &frames, 1);
+    let left_out = Registry::builtin().techniques().iter().filter(|row| run(row).is_err()).count();
+    // Those of `every_technique`.
+    assert!(left_out <= 4, "{left_out}");
+}
+
+/// Rows that do not run as the only change of a technique, with the reason.
+const ROWS_LEFT_OUT: [(&str, &str, &str); 4] = [
+    ("sync", "interlock", "VK_EXT_fragment_shader_interlock"),
+    ("sync", "interlock_ordered", "VK_EXT_fragment_shader_interlock"),
+    ("ties", "submission", "VK_EXT_fragment_shader_interlock"),
+    ("resolve", "closure", "a closure of a description"),
+];
+
+/// Returns the first technique that takes a row and another setting, and runs.
+fn taking_row(context: &Context, row: (&str, &str), others: &[Option<(&str, &str)>]) -> Option<String> {
+    let registry = Registry::builtin();
+    let pairs = registry.techniques().iter().flat_map(|technique| others.iter().map(move |other| (technique, other)));
+    pairs.into_iter().find_map(|(technique, other)| {
+        let k = if *other == Some(("k", "1")) { Some(1) } else { k_of(technique) };
+        let number = k.map(|k| k.to_string());
+        let set: Vec<(&str, &str)> =
+            std::iter::once(row).chain(*other).chain(number.iter().map(|k| ("k", k.as_str()))).collect();
+        let variant = variant(&technique.key, &set)?;
+        let what = format!("{} with {set:?}", technique.key);
+        compare(context, &what, (&variant, k), &[([13, 7], None)], 2).is_ok().then_some(what)
+    })
+}
+
+/// One technique per row: the first that takes the row as its only change, or as one of two.
+#[test]
+fn every_row_of_every_axis() {
+    let (context, registry) = (context(Validation::On), Registry::builtin());
+    let axes = || registry.axes().iter().filter(|axis| axis.chosen);
+    let rows = || axes().flat_map(|axis| registry.rows_of(axis.key).map(|row| (axis.key, row.key.as_str())));
+    let others: Vec<Option<(&str, &str)>> = rows().chain([("k", "1")]).map(Some).collect();
+    for row in rows() {
+        let alone = taking_row(&context, row, &[None]);
+        if let Some((_, _, reason)) = ROWS_LEFT_OUT.iter().find(|(axis, key, _)| (*axis, *key) == row) {
+            println!("{row:?}: needs {reason}");
+            continue;
+        }
+        let taken = alone.or_else(|| {
+            let others: Vec<_> =
+                others.iter().copied().filter(|other| other.is_none_or(|(axis, _)| axis != row.0)).collect();
+            taking_row(&context, row, &others)
+        });
+        println!("{}", taken.unwrap_or_else(|| panic!("nothing runs {row:?}")));
+    }
+}
+
+/// Memory is that of the capacity; k is a symbol of the frame. The least k and one between stand for all of them.
+#[test]
+fn k_below_the_capacity() {
+    let (context, size) = (context(Validation::On), [13, 7]);
+    let mut compared = 0;
+    for row in Registry::builtin().techniques() {
+        let Some(capacity) = k_of(row) else { continue };
+        let generated = Generated::of(&technique(row), &Registry::builtin());
+        // A host step of the frame decides k.
+        if generated.plan.frame.decisions().any(|decision| decision.sets.contains(&SymbolId::K)) {
+            continue;
+        }
+        let mut host = match generated.host(&context, size) {
+            Err(error) if error.to_string().contains(" lacks ") => continue,
+            host => host.unwrap_or_else(|error| panic!("{}: {error}", row.key)),
+        };
+        for k in [1, 3] {
+            // Some storages take only some k: sample counts are powers of two.
+            let Some(variant) = variant(&row.key, &[("k", &k.to_string())]).filter(|_| k <= capacity) else { continue };
+            let plan = Generated::of(&variant, &Registry::builtin()).plan;
+            if is_parallel(&context.name) && plan.arrival() == Arrival::Race {
+                continue;
+            }
+            host.set_symbol("k", k.into()).unwrap_or_else(|error| panic!("{}: {error}", row.key));
+            compared += 1;
+            let quads = quads(9, size, &mut Numbers::seeded(k.into()));
+            let seen = draw(&mut host, &quads, size).unwrap_or_else(|error| panic!("{}: {error}", row.key));
+            let difference = first_difference(&seen.pixels, &expected(&plan, &host, &quads, Some(k), size));
+            assert!(difference.is_none(), "{}, k = {k} of {capacity}: {}", row.key, difference.unwrap());
+        }
+    }
+    assert!(compared >= 20, "{compared}");
+}

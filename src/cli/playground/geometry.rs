@@ -1,0 +1,74 @@
+//! Answers the triangles of a scene with the attributes that a description reads, for the page to draw them itself.
+
+use fragbuf::{Registry, Selection, plan};
+use fragbuf_codegen::Plan;
+use fragbuf_scene::{AttributeRequest, Limits, Scene};
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use super::description::{Folder, sentence};
+use super::problem::Problem;
+use crate::cli::attributes::{color_offset, geometry, model_attributes};
+use crate::cli::memory::{Budget, budget};
+use crate::cli::output::Failure;
+use crate::cli::view;
+
+/// The memory of a scene with its vertices.
+const MEMORY: &str = "512MiB";
+
+/// Colour of parts for which a scene gives none, as for `render`.
+const COLOR: [f32; 4] = [0.15, 0.45, 0.35, 0.4];
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GeometryRequest {
+    text: String,
+    /// The name of a generated scene, without `builtin:`, with its parameters.
+    scene: String,
+}
+
+impl GeometryRequest {
+    /// Returns the length of a header in four bytes, the header as JSON, zeros up to a multiple of four bytes, then words: vertices,
+    /// normals, indices.
+    pub(super) fn answer(&self, folder: &Folder) -> Result<Vec<u8>, Problem> {
+        let registry = Registry::builtin();
+        let variant = folder.variant(&self.text, &registry)?;
+        let name = scene_name(&self.scene)?;
+        let problem = |failure: Failure| Problem::input(failure.message());
+        let wanted = model_attributes(&[&variant], &[]).map_err(problem)?;
+        let wanted: Vec<AttributeRequest> = wanted.into_iter().map(|attribute| attribute.request).collect();
+        let memory = budget(MEMORY).map_err(Problem::server)?;
+        let scene = fragbuf_scene::open_with(&name, COLOR, &wanted, &Limits { memory: memory.left() });
+        let scene = scene.map_err(|error| Problem::input(error.to_string()))?;
+        let plan = plan(&variant, &Selection::first(&variant), &registry);
+        let plan = plan.map_err(|errors| Problem::input(sentence(&errors)))?;
+        let rest = memory.without(scene.bytes(), "the scene").map_err(problem)?;
+        packed(&scene, &plan, rest)
+    }
+}
+
+/// Returns the name of a generated scene. Files are not read.
+pub(super) fn scene_name(scene: &str) -> Result<String, Problem> {
+    let name = format!("builtin:{scene}");
+    view::check(&name).map_err(|failure| Problem::request(failure.message()))?;
+    Ok(name)
+}
+
+fn packed(scene: &Scene, plan: &Plan, memory: Budget) -> Result<Vec<u8>, Problem> {
+    let geometry = geometry((scene, &[]), plan, memory).map_err(|failure| Problem::input(failure.message()))?;
+    let objects: Vec<Value> = geometry.objects.iter().map(|range| json!([range.start, range.end])).collect();
+    let header = json!({
+        "stride": geometry.stride,
+        "vertices": geometry.vertices.len() / geometry.stride.max(1),
+        "indices": geometry.indices.len(),
+        "objects": objects,
+        "triangles": scene.triangles(),
+        "color": color_offset(&plan.variant.attributes),
+    });
+    let mut bytes = header.to_string().into_bytes();
+    let length = bytes.len() as u32;
+    bytes.resize(bytes.len().next_multiple_of(4), 0);
+    let normals = scene.objects.iter().flat_map(|object| object.normals.iter().flatten().map(|value| value.to_bits()));
+    let words = geometry.vertices.iter().copied().chain(normals).chain(geometry.indices.iter().copied());
+    Ok([length.to_le_bytes().to_vec(), bytes, words.flat_map(u32::to_le_bytes).collect()].concat())
+}

@@ -1,0 +1,290 @@
+/**
+ * The page of the playground: creates its parts and passes what changes from one to the others.
+ *
+ * Input: the state of a link, typing, controls. Output: requests, and what the parts show of their answers. Each part is a module that
+ * knows its own elements only; the order of what follows from a change is here.
+ */
+import { api, latest } from "./api.mjs";
+import { createAxes } from "./axes.mjs";
+import { createCheck } from "./check.mjs";
+import { createCompare } from "./compare.mjs";
+import { createPresets, createValues, createView } from "./controls.mjs";
+import { createCosts } from "./costs.mjs";
+import { byId, count, debounced, milliseconds } from "./dom.mjs";
+import { createEditor } from "./editor.mjs";
+import { decode, encode } from "./link.mjs";
+import { createPicture } from "./picture.mjs";
+import { createProblems } from "./problems.mjs";
+import { parseScene, sceneName } from "./scenes.mjs";
+import { createStatus } from "./status.mjs";
+import { INITIAL, createStore } from "./state.mjs";
+import { frameOf } from "./statistics.mjs";
+import { createPanels } from "./tabs.mjs";
+import { createText } from "./text.mjs";
+import { createTheme } from "./theme.mjs";
+
+/** How long typing must rest before the text is analysed. */
+const TYPING = 10;
+
+createTheme(byId("theme"));
+const status = createStatus(byId("status"));
+const failed = (error) => status.fail(error, "analysis");
+
+/** Returns what shows errors of one source, until it succeeds. */
+const failing = (source) => (error) => status.fail(error, source);
+
+/** Returns the elements whose ids begin with a prefix, by the rest of their names. */
+const elements = (prefix, names) => Object.fromEntries(names.map((name) => [name, byId(prefix + name)]));
+
+async function run() {
+    const start = await api.start();
+    byId("about").textContent = `fragbuf ${start.version}`;
+    const link = await readLink(start);
+    const scene = start.scenes.find(({ name }) => name === "marbles") ?? start.scenes[0];
+    const text = (start.examples[0] ?? start.techniques[0]).text;
+    const store = createStore({ ...INITIAL, text, scene: sceneName(scene), ...link });
+    const page = await createPage(start, store);
+    window.addEventListener("hashchange", async () => {
+        const changes = await readLink(start);
+        if (changes && changes.text !== undefined) page.restore(changes);
+    });
+    page.analyse(store.value.text);
+}
+
+/** Returns the state of the address. A damaged link is reported, and the page starts without it. */
+async function readLink({ scenes }) {
+    try {
+        const fields = await decode(location.hash);
+        if (fields?.scene && !parseScene(scenes, fields.scene)) {
+            failing("link")(new Error(`The link names the scene ${fields.scene}, which this version does not have.`));
+            delete fields.scene;
+        }
+        return fields ?? {};
+    } catch (error) {
+        failing("link")(error);
+        return {};
+    }
+}
+
+async function createPage(start, store) {
+    /** The newest text without errors, and its description: what the panels show. */
+    let valid = { text: "", description: null };
+    let picture = null;
+
+    const editor = createEditor(byId("editor"), {
+        text: store.value.text,
+        api,
+        failed,
+        changed: (text) => store.set({ text }),
+    });
+    const apply = (edits) => editor.apply(edits, analysed) || status.say("The text changed meanwhile: try again when the problems are up to date.");
+    let analysed = "";
+    editor.setNames(start.techniques.map(({ key }) => key));
+    const problems = createProblems({ list: byId("problems-list"), heading: byId("problems-heading") }, { go: editor.go, apply });
+    const presets = createPresets(byId("preset"), byId("preset-note"), start, (text) => {
+        values.forget({ values: false });
+        editor.replace(text);
+    });
+    presets.show(store.value.text);
+    createView({ ...elements("", ["scene", "parameters", "width", "height", "device"]), note: byId("scene-note") }, start, store);
+    const values = createValues(elements("", ["k", "uniforms"]), store);
+
+    const request = () => {
+        const { scene, size, camera, uniforms, k, device } = store.value;
+        return { text: valid.text, scene, size, camera: camera ?? picture?.camera, uniforms, k, device };
+    };
+    const costs = createCosts(elements("", ["figures", "times", "fragments", "histogram", "predict", "tiers"]), {
+        async predict() {
+            const { text, scene, size, camera, uniforms } = request();
+            const prediction = await api.predict({ text, scene, size, camera, uniforms });
+            status.recovered("predict");
+            return prediction;
+        },
+        check: (target) => {
+            byId("check-target").value = target;
+            panels.show("check");
+            byId("check-form").requestSubmit();
+        },
+        failed: failing("predict"),
+    });
+    const axes = createAxes(byId("axes"), apply);
+    const check = createCheck(elements("check-", ["form", "target", "fragments", "k", "model", "run", "cancel", "result"]), {
+        check: api.check,
+        lines: (text) => templateLines(text, start.targets[0].name),
+        text: () => valid.text,
+    });
+    const text = createText(
+        { ...elements("text-", ["target", "form", "files", "view", "copy", "note", "where"]), download: byId("download") },
+        {
+            api,
+            targets: start.targets,
+            go: (line) => editor.go({ line }),
+            say: status.say,
+            failed,
+        },
+    );
+    const compare = createCompare(elements("compare-", ["preset", "own", "first", "second", "difference", "summary", "grid"]), {
+        api,
+        presets: [...start.examples, ...start.techniques],
+        request,
+        failed,
+    });
+
+    const showAxes = latest((signal, text) => api.analyse({ text, axes: true }, signal), {
+        done: ({ description }) => description && axes.show(description.axes ?? []),
+        failed,
+    });
+    const panels = createPanels(
+        byId("tabs"),
+        ["costs", "axes", "check", "text", "compare"].map((key) => ({ key, label: LABELS[key], panel: byId(`panel-${key}`) })),
+        (key) => {
+            text.setVisible(key === "text");
+            compare.setVisible(key === "compare");
+            if (key === "axes") showAxes(valid.text);
+        },
+    );
+
+    picture = await createPicture(byId("picture"), { api, report });
+    function report(result) {
+        if (result.error) return showError(typeof result.error === "string" ? result.error : result.error.message);
+        showError(null);
+        const frame = frameOf(result);
+        byId("frame").textContent = frameLine(frame);
+        byId("frame").title = frame.messages.join("\n");
+        costs.frame(frame);
+        if (picture?.camera && store.value.camera !== picture.camera) store.set({ camera: { ...picture.camera } });
+    }
+    const draw = coalesced(() => {
+        if (!valid.description) return;
+        const { scene, uniforms, k, size, device } = store.value;
+        const changes = { text: valid.text, scene, uniforms, k, size, device, ...(restored && { camera: restored }) };
+        restored = null;
+        const [width, height] = size;
+        byId("stage").style.setProperty("--aspect", String(width / height));
+        Promise.resolve(picture.set(changes)).catch((error) => showError(error.message));
+    });
+    let restored = store.value.camera;
+
+    const analyse = latest(async (signal, text) => ({ text, answer: await api.analyse({ text }, signal) }), {
+        done({ text: about, answer }) {
+            if (!editor.show(answer.diagnostics, about)) return;
+            analysed = about;
+            status.recovered("start");
+            status.recovered("analysis");
+            problems.show(answer.diagnostics);
+            const { description } = answer;
+            document.body.dataset.text = description ? "valid" : "invalid";
+            check.outdate(about);
+            if (!description) return;
+            if (description.technique !== valid.description?.technique || description.name !== valid.description?.name)
+                costs.clearTimes();
+            valid = { text: about, description };
+            values.show(description);
+            costs.describe(description);
+            costs.setK(store.value.k);
+            check.describe(description.targets);
+            text.describe(about, description.passes);
+            if (panels.current === "axes") showAxes(about);
+            draw();
+            compare.update();
+        },
+        failed: failing("analysis"),
+    });
+    const analyseSoon = debounced(TYPING, analyse);
+    const writeLink = debounced(300, async () => {
+        const fragment = await encode(store.value).catch(() => null);
+        // A description that is too long for a link leaves the address without one.
+        history.replaceState(null, "", fragment ? `#${fragment}` : location.pathname);
+    });
+    const compareSoon = debounced(120, () => compare.update());
+
+    store.subscribe((state, changed) => {
+        if (changed.has("text")) {
+            presets.show(state.text);
+            analyseSoon(state.text);
+        }
+        if (["scene", "uniforms", "k", "size", "device"].some((name) => changed.has(name))) draw();
+        if (changed.has("k")) costs.setK(state.k);
+        if (["scene", "camera", "size"].some((name) => changed.has(name))) costs.outdate();
+        if (!changed.has("text")) compareSoon();
+        writeLink();
+    });
+    byId("share").addEventListener("click", () => share(store.value));
+
+    return {
+        analyse,
+        restore(changes) {
+            values.forget({ values: true });
+            restored = changes.camera ?? null;
+            store.set({ k: null, camera: null, ...changes });
+            editor.replace(changes.text);
+            draw();
+        },
+    };
+}
+
+/** Returns the texts of the templates' lines in the passes of a description, by their places. Without them, a schedule has places alone. */
+async function templateLines(text, target) {
+    const texts = new Map();
+    const { files } = await api.generate({ text, target, form: "program" }).catch(() => ({ files: [] }));
+    for (const { text, templates } of files) {
+        const lines = text?.split("\n") ?? [];
+        templates?.forEach((place, index) => place && texts.set(place, lines[index]));
+    }
+    return texts;
+}
+
+const LABELS = { costs: "Costs", axes: "Axes", check: "Check it", text: "Text", compare: "Side by side" };
+
+async function share(state) {
+    try {
+        const address = `${location.origin}${location.pathname}#${await encode(state)}`;
+        history.replaceState(null, "", address);
+        await navigator.clipboard.writeText(address);
+        status.say("Copied the link: it holds the description, scene, camera, k and uniforms.");
+    } catch (error) {
+        failed(
+            error.name === "NotAllowedError"
+                ? new Error("The browser does not allow the page to copy: the link is in the address bar.")
+                : error,
+        );
+    }
+}
+
+/** Shows why there is no picture, over the last one. */
+function showError(message) {
+    const overlay = byId("overlay");
+    overlay.hidden = !message;
+    overlay.textContent = message ?? "";
+}
+
+/** Returns a frame's statistics in a line. */
+function frameLine({ device, target, ms, fragments, lost, triangles, k }) {
+    // Preparing passes and triangles is no part of a frame.
+    const times = Number.isFinite(ms.frame) ? [ms.frame] : Object.values(ms);
+    const parts = [
+        device,
+        target,
+        times.length > 0 && milliseconds(times.reduce((sum, value) => sum + value, 0)),
+        Number.isFinite(triangles) && `${count(triangles)} triangles`,
+        fragments && `${count(fragments.generated)} fragments`,
+        lost?.total > 0 && `${count(lost.total)} fragments are lost`,
+        Number.isFinite(k) && `k = ${k}`,
+    ];
+    return parts.filter(Boolean).join(" · ");
+}
+
+/** Returns a function that runs `action` once per turn, however often it is called. */
+function coalesced(action) {
+    let waiting = false;
+    return () => {
+        if (waiting) return;
+        waiting = true;
+        queueMicrotask(() => {
+            waiting = false;
+            action();
+        });
+    };
+}
+
+run().catch(failed);

@@ -1,0 +1,165 @@
+/**
+ * The picture of a description: drawn by WebGPU in the page, or by a device of the server where the browser has no WebGPU or the
+ * description needs more than it offers. The latest request wins; a frame is never drawn twice at the same time.
+ */
+import { AUTO } from "./camera.mjs";
+import { WebGpuFrames } from "./webgpu_frames.mjs";
+import { ServerFrames } from "./server_frames.mjs";
+
+/** The parts of a request. The device `auto` is WebGPU in the page, or what the server selects. */
+const DEFAULTS = { text: "", scene: "marbles", uniforms: {}, k: null, size: [512, 512], camera: AUTO, device: "auto" };
+
+/** The parts that change while something is dragged. */
+const MOVING = ["camera", "uniforms", "k"];
+
+/**
+ * Shows pictures on a canvas.
+ * @param {HTMLCanvasElement} canvas
+ * @param {{ report(statistics: object): void, useServer?: boolean }} options `report` gets the statistics of each frame, or `{ error }`.
+ */
+export async function createPicture(canvas, { report, useServer = false }) {
+    const picture = new Picture(canvas, report);
+    await picture.open(useServer);
+    return picture;
+}
+
+class Picture {
+    #canvas;
+    #report;
+    #request = { ...DEFAULTS };
+    #webgpu = null;
+    #server = new ServerFrames();
+    #isWanted = false;
+    #drawing = null;
+    /** Cancels the frame that is drawn. */
+    #running = null;
+    #onCamera = () => {};
+
+    constructor(canvas, report) {
+        this.#canvas = canvas;
+        this.#report = report;
+        listen(canvas, this);
+    }
+
+    async open(useServer) {
+        this.#webgpu = useServer ? null : await WebGpuFrames.open();
+    }
+
+    /** Who draws: `webgpu` or `server`. */
+    get mode() {
+        return this.#webgpu ? "webgpu" : "server";
+    }
+
+    get camera() {
+        return this.#request.camera;
+    }
+
+    set camera(camera) {
+        this.set({ camera });
+        this.#onCamera(camera);
+    }
+
+    /** Is called when the pointer or the keyboard moves the camera. */
+    set onCamera(listener) {
+        this.#onCamera = listener;
+    }
+
+    /** Changes parts of the request and draws. Resolves when this request, or a later one, is shown. */
+    set(changes) {
+        // A frame of an earlier camera or slider is shown meanwhile; one of another description, scene, size or device is not waited for.
+        const isOther = (name) => !MOVING.includes(name) && JSON.stringify(changes[name]) !== JSON.stringify(this.#request[name]);
+        if (Object.keys(changes).some(isOther)) this.#running?.abort();
+        Object.assign(this.#request, changes);
+        this.#isWanted = true;
+        this.#canvas.setAttribute("aria-busy", "true");
+        this.#drawing ??= this.#drawAll();
+        return this.#drawing;
+    }
+
+    async #drawAll() {
+        // `set` must see that nothing is drawn as soon as the loop has ended.
+        await this.#drawWanted();
+        this.#drawing = null;
+        if (this.#isWanted) return this.set({});
+        this.#canvas.setAttribute("aria-busy", "false");
+    }
+
+    async #drawWanted() {
+        while (this.#isWanted) {
+            this.#isWanted = false;
+            const request = { ...this.#request };
+            if (request.text === "") continue;
+            this.#running = new AbortController();
+            try {
+                const { image, statistics } = await this.#draw(request, this.#running.signal);
+                show(this.#canvas, image);
+                this.#report(statistics);
+            } catch (error) {
+                if (error.name !== "AbortError") this.#report({ error: error.message });
+            }
+        }
+    }
+
+    /** Draws a request by WebGPU, or by the server where another device is chosen, or if WebGPU says why it cannot. */
+    async #draw(request, signal) {
+        if (!this.#webgpu || request.device !== "auto") return this.#server.draw(request, signal);
+        try {
+            return await this.#webgpu.draw(request);
+        } catch (error) {
+            if (error.isLost) this.#webgpu = await WebGpuFrames.open();
+            const { image, statistics } = await this.#server.draw(request, signal);
+            return { image, statistics: { ...statistics, reason: error.message } };
+        }
+    }
+}
+
+function show(canvas, image) {
+    [canvas.width, canvas.height] = [image.width, image.height];
+    const context = canvas.getContext("2d");
+    if (image instanceof ImageData) context.putImageData(image, 0, 0);
+    else {
+        context.drawImage(image, 0, 0);
+        image.close();
+    }
+}
+
+/** Turns the camera by the pointer, the wheel and the keyboard. */
+function listen(canvas, picture) {
+    const turn = (right, up) => {
+        const { azimuth, elevation, zoom } = picture.camera;
+        picture.camera = { azimuth: (azimuth + right + 360) % 360, elevation: Math.min(90, Math.max(-90, elevation + up)), zoom };
+    };
+    const zoom = (factor) => {
+        const camera = picture.camera;
+        picture.camera = { ...camera, zoom: Math.min(100, Math.max(0.1, camera.zoom * factor)) };
+    };
+    const keys = {
+        ArrowLeft: () => turn(-5, 0),
+        ArrowRight: () => turn(5, 0),
+        ArrowUp: () => turn(0, 5),
+        ArrowDown: () => turn(0, -5),
+        "+": () => zoom(1.1),
+        "=": () => zoom(1.1),
+        "-": () => zoom(1 / 1.1),
+        0: () => (picture.camera = AUTO),
+    };
+    canvas.addEventListener("keydown", (event) => {
+        if (event.ctrlKey || event.metaKey || event.altKey || !keys[event.key]) return;
+        event.preventDefault();
+        keys[event.key]();
+    });
+    canvas.addEventListener("pointerdown", (event) => canvas.setPointerCapture(event.pointerId));
+    canvas.addEventListener("pointermove", (event) => {
+        if (!canvas.hasPointerCapture(event.pointerId)) return;
+        const scale = 180 / canvas.clientWidth;
+        turn(-event.movementX * scale, event.movementY * scale);
+    });
+    canvas.addEventListener(
+        "wheel",
+        (event) => {
+            event.preventDefault();
+            zoom(Math.exp(-event.deltaY / 600));
+        },
+        { passive: false },
+    );
+}

@@ -1,0 +1,68 @@
+/**
+ * The statistics of a frame in one form, whoever drew it.
+ *
+ * Input: what the picture reports: the JSON of `fragbuf render --json` for a frame of the server, times and counters for one of WebGPU.
+ * Output: the same fields for both; what was not counted or timed is null. Nothing is shown here.
+ */
+
+/**
+ * @typedef {object} Frame
+ * @property {string} device who drew it
+ * @property {string | null} target
+ * @property {Record<string, number>} ms by pass, or by part of the frame
+ * @property {number | null} bytes
+ * @property {number | null} triangles
+ * @property {number | null} k
+ * @property {{ generated: number, stored: number, culled: number, displaced: number, occluded: number } | null} fragments
+ * @property {{ total: number, by_counter: Record<string, number> } | null} lost
+ * @property {number | null} hit_ratio
+ * @property {{ iterations: number, end: string }[]} loops
+ * @property {string[]} messages warnings about the frame
+ */
+
+/** @returns {Frame} */
+export function frameOf(reported) {
+    const { bytes = null, triangles = null, k = null, target = null, loops } = reported;
+    const lost = lossesOf(reported);
+    const fragments = fragmentsOf(reported, lost);
+    const whole = fragments && fragments.generated > 0 ? fragments.stored / fragments.generated : null;
+    return {
+        device: reported.mode === "webgpu" ? "WebGPU in this page" : (reported.device ?? ""),
+        target,
+        ms: timesOf(reported.ms ?? reported.times ?? {}),
+        bytes,
+        triangles,
+        k,
+        fragments,
+        lost,
+        hit_ratio: reported.hit_ratio ?? whole,
+        loops: (Array.isArray(loops) ? loops : []).map(loopOf),
+        messages: messagesOf(reported),
+    };
+}
+
+function timesOf(ms) {
+    return Object.fromEntries(Object.entries(ms).filter(([, value]) => Number.isFinite(value)));
+}
+
+/** A loop of WebGPU says whether its condition was met; null if nothing has waited for it. */
+function loopOf({ iterations, end, isMet }) {
+    return { iterations, end: end ?? (isMet === false ? "limit" : "condition") };
+}
+
+function lossesOf({ lost }) {
+    return Number.isFinite(lost?.total) ? lost : null;
+}
+
+function fragmentsOf({ fragments, counts }, lost) {
+    if (Number.isFinite(fragments?.generated)) return fragments;
+    // With `counters: losses` the other counters of WebGPU are 0.
+    if (!(counts?.generated > 0)) return null;
+    const { generated, culled = 0, displaced = 0, occluded = 0 } = counts;
+    return { generated, culled, displaced, occluded, stored: generated - culled - displaced - (lost?.total ?? 0) };
+}
+
+function messagesOf({ messages, reason }) {
+    const texts = (messages ?? []).map((message) => (typeof message === "string" ? message : message?.message));
+    return [...texts, reason && `Drawn by the server: ${reason}`].filter(Boolean);
+}

@@ -1,0 +1,57 @@
+/**
+ * Runs the scenarios against a server: `node drive.mjs ADDRESS [NAME…]`.
+ *
+ * Input: the address that `fragbuf playground` prints. Output: a line per scenario; the exit status is 1 if one failed. Every scenario has a
+ * page of its own.
+ */
+import * as picture from "./picture.mjs";
+import { WEBGPU, close, launch, open } from "./page.mjs";
+import * as typing from "./typing.mjs";
+import * as webgpu from "./webgpu.mjs";
+import * as whole from "./whole.mjs";
+
+const [given, ...names] = process.argv.slice(2);
+const address = given.endsWith("/") ? given : `${given}/`;
+const all = { ...typing, ...picture, ...whole, ...webgpu };
+const unknown = names.filter((name) => !(name in all));
+if (unknown.length > 0) throw new Error(`no scenario ${unknown.join(", ")}`);
+
+/** Errors that a scenario causes on purpose. */
+const EXPECTED = {
+    an_error_of_a_request_is_shown: [/503/],
+    an_answer_that_comes_too_late_is_dropped: [/ERR_ABORTED|ERR_FAILED/],
+};
+
+/** The browsers with and without WebGPU, opened when they are needed. */
+const browsers = new Map();
+
+async function browserFor(name) {
+    const key = name in webgpu;
+    if (!browsers.has(key)) browsers.set(key, await launch(key ? WEBGPU : []));
+    return browsers.get(key);
+}
+
+let failures = 0;
+for (const [name, scenario] of Object.entries(all)) {
+    if (names.length > 0 && !names.includes(name)) continue;
+    const begin = performance.now();
+    let page = null;
+    try {
+        const browser = await browserFor(name);
+        page = await open(browser, address);
+        await scenario(page, { browser, address });
+        await close(page, { expected: EXPECTED[name] });
+        console.log(`ok      ${name} (${Math.round(performance.now() - begin)} ms)`);
+    } catch (error) {
+        failures += 1;
+        console.log(`FAILED  ${name}: ${error.stack ?? error}`);
+        if (process.env.SCREENSHOTS) await page?.screenshot({ path: `${process.env.SCREENSHOTS}/${name}.png` }).catch(() => {});
+        for (const problem of page?.problems ?? []) console.log(`        ${problem}`);
+        await page
+            ?.context()
+            .close()
+            .catch(() => {});
+    }
+}
+for (const browser of browsers.values()) await browser.close();
+process.exit(failures === 0 ? 0 : 1);

@@ -1,0 +1,302 @@
+/**
+ * Scenarios of the whole page: by keyboard alone, in every window, light and dark, links, texts that leave the page.
+ */
+import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
+import { PATIENCE, close, drawn, editor, heading, open, pixels, tabTo, text, write } from "./page.mjs";
+
+/** Everything by keyboard alone: no pointer is used here. */
+export async function everything_works_by_keyboard_alone(page) {
+    await tabTo(page, "Skip to the description");
+    await page.keyboard.press("Enter");
+    await tabTo(page, "Description of the fragment buffer");
+    await page.keyboard.press("Control+a");
+    await page.keyboard.insertText("buffer Mine from kplus_aray {\n    keep 4;\n}\n");
+    await heading(page, "1 error");
+    await page.keyboard.press("F8");
+    await page.locator(".cm-tooltip.problem", { hasText: "unknown technique" }).waitFor();
+    await page.keyboard.press("Alt+Enter");
+    await heading(page, "No problems");
+    assert.match(await text(page), /from kplus_array/);
+    // Tab indents; Escape and Tab leave.
+    await page.keyboard.press("Control+Home");
+    await page.keyboard.press("Tab");
+    assert.match(await text(page), /^ {4}buffer/);
+    await page.keyboard.press("Shift+Tab");
+    await page.keyboard.press("Escape");
+    await page.keyboard.press("Tab");
+    assert.equal(await editor(page).evaluate((element) => element === document.activeElement), false);
+    await tabTo(page, /^Picture of the scene/);
+    let before = await pixels(page);
+    await page.keyboard.press("ArrowRight");
+    before = await drawn(page, before);
+    await tabTo(page, "k");
+    await page.keyboard.press("Home");
+    await drawn(page, before);
+    await tabTo(page, "Costs");
+    await page.keyboard.press("ArrowRight");
+    assert.equal(await page.getByRole("tab", { selected: true, name: "Axes" }).count(), 1);
+    await page.keyboard.press("ArrowRight");
+    await tabTo(page, "Check it");
+    await page.keyboard.press("Enter");
+    await page.locator("#check-result .verdict:not(.running)").waitFor({ timeout: PATIENCE });
+}
+
+/** Whatever has the focus shows it. */
+export async function the_focus_is_visible(page) {
+    const invisible = [];
+    for (let press = 0; press < 45; press += 1) {
+        await page.keyboard.press("Tab");
+        if (await page.evaluate(() => document.activeElement.classList.contains("cm-content"))) {
+            await page.keyboard.press("Escape");
+            continue;
+        }
+        const seen = await page.evaluate(() => {
+            const element = document.activeElement;
+            if (element === document.body) return null;
+            const style = getComputedStyle(element);
+            const visible = style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 1;
+            return visible ? null : element.outerHTML.slice(0, 120);
+        });
+        if (seen) invisible.push(seen);
+    }
+    assert.deepEqual(invisible, []);
+}
+
+/** Every control has a name. */
+export async function every_control_has_a_name(page) {
+    for (const tab of ["Costs", "Axes", "Check it", "Text", "Side by side"]) {
+        await page.getByRole("tab", { name: tab }).click();
+        const unnamed = await page.evaluate(() => {
+            const controls = [...document.querySelectorAll("button, select, input, canvas, [role=textbox], [role=img]")];
+            const name = (element) =>
+                element.getAttribute("aria-label") ||
+                element.labels?.[0]?.textContent ||
+                element.textContent ||
+                element.getAttribute("title");
+            return controls
+                .filter((element) => element.checkVisibility() && !name(element)?.trim())
+                .map((element) => element.outerHTML);
+        });
+        assert.deepEqual(unnamed, [], tab);
+    }
+}
+
+/** Windows from 360 pixels on: nothing is wider than the window; panes are stacked, or side by side without scrolling the page. */
+export async function every_window_has_a_layout(page) {
+    for (const [width, height] of [
+        [360, 740],
+        [390, 844],
+        [760, 900],
+        [1000, 800],
+        [1199, 800],
+        [1200, 800],
+        [1600, 1000],
+    ]) {
+        await page.setViewportSize({ width, height });
+        await page.waitForTimeout(100);
+        const layout = await page.evaluate(() => {
+            const box = (id) => document.getElementById(id).getBoundingClientRect();
+            const panes = ["editor-pane", "picture-pane", "panels"].map(box);
+            const { scrollWidth, scrollHeight } = document.documentElement;
+            return { panes: panes.map(({ x, y, width, height }) => ({ x, y, width, height })), scrollWidth, scrollHeight };
+        });
+        const [edit, picture, panels] = layout.panes;
+        const name = `${width} × ${height}: ${JSON.stringify(layout)}`;
+        assert.ok(layout.scrollWidth <= width, name);
+        assert.ok(
+            layout.panes.every((pane) => pane.width >= 320 && pane.height >= 300),
+            name,
+        );
+        if (width < 760)
+            assert.ok(edit.x === picture.x && picture.x === panels.x && picture.y > edit.y && panels.y > picture.y, name);
+        if (width >= 760) assert.ok(edit.y === picture.y && picture.x > edit.x, name);
+        if (width >= 1200) assert.ok(panels.x > picture.x && panels.y === edit.y && layout.scrollHeight <= height, name);
+        for (const tab of ["Costs", "Axes", "Check it", "Text", "Side by side"]) {
+            await page.getByRole("tab", { name: tab }).click();
+            assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= width, `${tab} at ${width}`);
+        }
+        await page.getByRole("tab", { name: "Costs" }).click();
+    }
+}
+
+/** Light and dark follow the system and the button; all text has the contrast of WCAG AA. */
+export async function light_and_dark_have_contrast(page) {
+    const grounds = [];
+    await write(page, "buffer Mine from kplus_aray {\n    // a comment\n    keep 4 least |f| f.depth;\n}\n");
+    await heading(page, "1 error");
+    for (const scheme of ["light", "dark"]) {
+        await page.emulateMedia({ colorScheme: scheme });
+        grounds.push(await page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor));
+        for (const tab of ["Costs", "Axes", "Check it", "Text", "Side by side"]) {
+            await page.getByRole("tab", { name: tab }).click();
+            await page.mouse.move(0, 0);
+            assert.deepEqual(await page.evaluate(faint), [], `${tab}, ${scheme}`);
+        }
+    }
+    assert.notEqual(grounds[0], grounds[1]);
+    const toggle = page.getByRole("button", { name: /^Colours/ });
+    await toggle.click();
+    assert.equal(await page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor), grounds[0]);
+    await toggle.click();
+    assert.equal(await page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor), grounds[1]);
+    await page.reload();
+    await page.locator(".cm-content").first().waitFor();
+    await page.emulateMedia({ colorScheme: "light" });
+    assert.equal(await page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor), grounds[1]);
+}
+
+/** Runs in the page. Returns visible texts whose contrast with their ground is less than 4.5. */
+function faint() {
+    const canvas = new OffscreenCanvas(1, 1).getContext("2d", { willReadFrequently: true });
+    const rgba = (color) => {
+        canvas.clearRect(0, 0, 1, 1);
+        canvas.fillStyle = color;
+        canvas.fillRect(0, 0, 1, 1);
+        const [r, g, b, a] = canvas.getImageData(0, 0, 1, 1).data;
+        return [r, g, b, a / 255];
+    };
+    const over = (top, bottom) => top.slice(0, 3).map((value, index) => value * top[3] + bottom[index] * (1 - top[3]));
+    const ground = (element) => {
+        if (!element) return rgba(getComputedStyle(document.documentElement).backgroundColor).slice(0, 3);
+        const color = rgba(getComputedStyle(element).backgroundColor);
+        return color[3] === 1 ? color.slice(0, 3) : over(color, ground(element.parentElement));
+    };
+    const luminance = (color) => {
+        const [r, g, b] = color.map((value) =>
+            value / 255 <= 0.04045 ? value / 255 / 12.92 : ((value / 255 + 0.055) / 1.055) ** 2.4,
+        );
+        return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    };
+    const found = [];
+    const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+    while (walker.nextNode()) {
+        const element = walker.currentNode.parentElement;
+        if (!walker.currentNode.textContent.trim() || !element.checkVisibility({ visibilityProperty: true })) continue;
+        // What cannot be used, and what is about an earlier text, is exempt.
+        if (
+            element.closest(
+                ":disabled, .outdated, option, svg, noscript, .skip, .unseen, [aria-hidden=true], body[data-text=invalid] .panel",
+            )
+        )
+            continue;
+        const back = ground(element);
+        const [light, dark] = [luminance(over(rgba(getComputedStyle(element).color), back)), luminance(back)].sort(
+            (a, b) => b - a,
+        );
+        const contrast = (light + 0.05) / (dark + 0.05);
+        if (contrast < 4.5)
+            found.push(`${contrast.toFixed(2)}: ${element.className} ${walker.currentNode.textContent.slice(0, 40)}`);
+    }
+    return found;
+}
+
+/** A link holds description, scene, camera, k and uniforms. */
+export async function a_link_restores_the_page(page, { browser, address }) {
+    const first = await pixels(page);
+    await write(
+        page,
+        "// über\nbuffer Mine from kplus_array {\n    uniform { plane: f32 }\n    keep 6;\n    where |f, u| f.depth > u.plane;\n}\n",
+    );
+    await heading(page, "No problems");
+    let before = await drawn(page, first);
+    await page.getByRole("combobox", { name: "scene" }).selectOption("cubes");
+    before = await drawn(page, before);
+    await page.getByRole("spinbutton", { name: "plane, as a number" }).fill("0.125");
+    await page.getByRole("spinbutton", { name: "k, as a number" }).fill("2");
+    await page.locator("#picture").focus();
+    await page.keyboard.press("ArrowRight");
+    await page.locator("#picture[aria-busy=false]").waitFor();
+    const last = await pixels(page);
+    await page.getByRole("button", { name: "Copy link" }).click();
+    await page.getByRole("status").filter({ hasText: "Copied the link" }).waitFor();
+    const link = await page.evaluate(() => navigator.clipboard.readText());
+    assert.ok(link.startsWith(`${address}#v1.`), link);
+    const other = await open(browser, address, { hash: link.slice(address.length) });
+    assert.equal(await text(other), await text(page));
+    assert.equal(await other.getByRole("spinbutton", { name: "plane, as a number" }).inputValue(), "0.125");
+    assert.equal(await other.getByRole("spinbutton", { name: "k, as a number" }).inputValue(), "2");
+    assert.equal(await other.getByRole("combobox", { name: "scene" }).inputValue(), "cubes");
+    await other.waitForFunction((last) => document.querySelector("#picture").toDataURL() === last, last, { timeout: PATIENCE });
+    await close(other);
+}
+
+/** A damaged link is reported, and the page works without it. */
+export async function a_damaged_link_is_reported(page, { browser, address }) {
+    for (const hash of ["#v1.AAAA", "#v1.%", "#nothing", "#v1.q1YqLVZSKi1OLVKyUjIwUtJRKkmtKFGyMgUA"]) {
+        const other = await open(browser, address, { hash });
+        assert.match(await other.getByRole("status").textContent(), /link/i, hash);
+        assert.match(await text(other), /buffer/);
+        await close(other);
+    }
+}
+
+/** The text of every pass can be read, copied and downloaded. */
+export async function text_is_shown_copied_and_downloaded(page) {
+    await write(page, "buffer Mine from kplus_array {\n    keep 4 least |f| f.depth - f.color.w;\n}\n");
+    await heading(page, "No problems");
+    await page.getByRole("tab", { name: "Text" }).click();
+    const files = page.getByRole("tablist", { name: "Passes" });
+    await files.getByRole("tab", { name: "store", exact: true }).click();
+    const code = page.locator("#text-view .cm-content");
+    await code.filter({ hasText: "fn" }).waitFor();
+    await page.getByRole("button", { name: "Copy", exact: true }).click();
+    await page.getByRole("status").filter({ hasText: "Copied" }).waitFor();
+    const copied = await page.evaluate(() => navigator.clipboard.readText());
+    assert.match(copied, /fn /);
+    assert.ok(copied.startsWith((await code.locator(".cm-line").first().textContent()).trimEnd()));
+    const target = page.getByRole("combobox", { name: "target" });
+    const names = await target.locator("option").evaluateAll((options) => options.map(({ value }) => value));
+    assert.ok(names.length >= 5, names.join());
+    await target.selectOption(names.find((name) => name.startsWith("glsl")));
+    await code.filter({ hasText: "#version" }).waitFor();
+    const waiting = page.waitForEvent("download");
+    await page.getByRole("button", { name: "Download" }).click();
+    const download = await waiting;
+    assert.match(download.suggestedFilename(), /\.zip$/);
+    const zip = await readFile(await download.path());
+    assert.equal(zip.subarray(0, 2).toString(), "PK");
+    assert.ok(zip.includes("manifest.json") && zip.includes(".wgsl") && zip.includes(".spv"));
+}
+
+/** An error of a request is in the status line, in words, and the page goes on. */
+export async function an_error_of_a_request_is_shown(page) {
+    await page.route("**/api/predict", (route) =>
+        route.fulfill({
+            status: 503,
+            contentType: "application/json",
+            body: '{"error": "out of memory: choose a smaller size"}',
+        }),
+    );
+    await page.getByRole("button", { name: "Count" }).click();
+    await page.getByRole("status").filter({ hasText: "choose a smaller size" }).waitFor();
+    await page.unroute("**/api/predict");
+    await page.getByRole("button", { name: "Count" }).click();
+    await page.getByRole("img", { name: /covered pixels/ }).waitFor();
+}
+
+/** Two pages at once have states of their own. */
+export async function two_pages_work_at_once(page, { browser, address }) {
+    const other = await open(browser, address);
+    await write(page, "buffer Mine from kplus_aray {\n}\n");
+    await write(other, "buffer Mine from kplus_array {\n    keep 3;\n}\n");
+    await heading(page, "1 error");
+    await heading(other, "No problems");
+    await close(other);
+}
+/** A line of generated text leads to the line of the description that it came from. */
+export async function a_generated_line_leads_to_its_origin(page) {
+    await write(page, "buffer Mine from kplus_array {\n    keep 4 least |f| f.depth - f.color.w;\n}\n");
+    await heading(page, "No problems");
+    await page.getByRole("tab", { name: "Text" }).click();
+    await page.getByRole("tablist", { name: "Passes" }).getByRole("tab", { name: "store", exact: true }).click();
+    const origin = page.locator("#text-view .origin").first();
+    for (let scroll = 0; scroll < 200 && (await origin.count()) === 0; scroll += 1) {
+        await page.locator("#text-view .cm-scroller").evaluate((scroller) => scroller.scrollBy(0, 150));
+        await page.waitForTimeout(30);
+    }
+    assert.equal(await origin.textContent(), "2");
+    await origin.click();
+    assert.equal(await page.locator("#editor .cm-activeLine").textContent(), "    keep 4 least |f| f.depth - f.color.w;");
+}
+
