@@ -50,6 +50,7 @@ fn controls_change_the_picture_and_costs_are_shown() {
     run(&[
         "sliders_change_the_picture",
         "scene_and_size_change_the_picture",
+        "a_model_is_opened_and_dropped",
         "a_preset_replaces_the_description",
         "costs_are_those_of_the_frame",
         "an_axis_is_chosen_in_the_table",

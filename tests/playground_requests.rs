@@ -240,11 +240,105 @@ fn files_outside_of_the_folder_are_not_read() {
     assert!(answer["description"].is_object(), "{answer}");
     let (status, answer) = with.post("render", &picture(&naming("first_k.wgsl")));
     assert_eq!(status, 200, "{answer}");
-    // Scenes are generated ones.
-    for scene in ["/etc/passwd", "../secret.wgsl", "cubes,n=1 --out /tmp/x", "", "marbles,n=99999999999"] {
+    // Scenes are generated ones, or models that a page sent.
+    for scene in [
+        "/etc/passwd",
+        "../secret.wgsl",
+        "model:../secret.wgsl",
+        "model:",
+        "cubes,n=1 --out /tmp/x",
+        "",
+        "marbles,n=99999999999",
+    ] {
         let (status, answer) = with.post("render", &picture_with("scene", json!(scene)));
         assert!(status == 400 || status == 422, "{scene}: {status} {answer}");
     }
+}
+
+const MODEL: &str = "mtllib secret.mtl\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nusemtl red\nf 1 2 3\n";
+
+impl Server {
+    fn model(&self, name: &str, bytes: &str) -> (u16, Value) {
+        let headers = [("Host", self.address.as_str()), ("Content-Type", "application/octet-stream")];
+        let (status, text) = self.request(&format!("POST /api/model?name={name}"), &headers, bytes);
+        (status, serde_json::from_str(&text).unwrap_or(Value::String(text)))
+    }
+}
+
+#[test]
+fn models_are_drawn_without_the_files_that_they_name() {
+    let folder = folder("models");
+    std::fs::write(folder.join("secret.mtl"), "newmtl red\nKd 1 0 0\n").unwrap();
+    let server = Server::start(&[folder.to_str().unwrap()]);
+    let secret = folder.join("secret.mtl").display().to_string();
+    let model = MODEL.replace("secret.mtl", &secret);
+    let (status, opened) = server.model("..%2Fone%20triangle.obj", &model);
+    assert_eq!(
+        (status, &opened["triangles"], &opened["name"]),
+        (200, &json!(1), &json!("one_triangle.obj")),
+        "{opened}"
+    );
+    let warning = opened["warnings"][0].as_str().unwrap();
+    assert!(warning.starts_with("one_triangle.obj:1: files that the model names are not read"), "{warning}");
+    let scene = opened["scene"].clone();
+    assert_eq!(server.model("..%2Fone%20triangle.obj", &model).1["scene"], scene, "the same file has the same name");
+    let drawn = |scene: &Value| server.post("render", &picture_with("scene", scene.clone()));
+    let (status, answer) = drawn(&scene);
+    assert_eq!((status, &answer["statistics"]["triangles"]), (200, &json!(1)), "{answer}");
+    assert!(answer["messages"][0]["message"].as_str().unwrap().starts_with("one_triangle.obj:1: "), "{answer}");
+    // The image is that of the model without its library.
+    let path = folder.join("plain.obj");
+    std::fs::write(&path, MODEL.replace("mtllib secret.mtl\n", "")).unwrap();
+    let out = folder.join("plain.png");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fragbuf"));
+    command.args(["render", "kb", "--set", "k=4", "--size", "16x12", "--camera", "orbit:20,10", "--device", "cpu"]);
+    command.args(["--scene", path.to_str().unwrap(), "--out", out.to_str().unwrap()]).stderr(Stdio::null());
+    assert!(command.status().unwrap().success());
+    use base64::Engine as _;
+    let png = base64::engine::general_purpose::STANDARD.encode(std::fs::read(&out).unwrap());
+    assert!(answer["png"] == json!(png), "the images differ");
+    let (status, answer) = server.post("predict", &picture_with("scene", scene.clone()));
+    assert_eq!((status, answer["histogram"].as_array().map(Vec::len)), (200, Some(1024)), "{answer}");
+    let (status, answer) = server.post("geometry", &json!({ "text": KB, "scene": scene }));
+    assert!(status == 200 && answer.as_str().unwrap().contains("\"triangles\":1"), "{answer}");
+    let (status, start) = server.get("/api/start");
+    assert!(status == 200 && start.contains("one_triangle.obj"), "{start}");
+    let (status, answer) = drawn(&json!("model:0123456789abcdef"));
+    assert!(status == 422 && answer["error"].as_str().unwrap().contains("open the file again"), "{answer}");
+}
+
+#[test]
+fn models_that_cannot_be_read_are_refused() {
+    let server = Server::start(&[]);
+    let gltf = r#"{"asset":{"version":"2.0"},"buffers":[{"uri":"/etc/passwd","byteLength":1}]}"#;
+    for (name, bytes, expected) in [
+        ("a.obj", "", "a.obj: the file is empty"),
+        ("a.obj", "v 0 0 0\n", "a.obj: the model has no triangles"),
+        ("a.stl", "solid a", "a.stl: unknown extension"),
+        ("", MODEL, "model: unknown extension"),
+        ("a.obj", "v 0 0 zero\n", "a.obj:1: "),
+        ("a.ply", "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nend_header\n", "a.ply"),
+        ("a.gltf", gltf, "files that the model names are not read: `/etc/passwd`"),
+        ("..", MODEL, "unknown extension"),
+    ] {
+        let (status, answer) = server.model(name, bytes);
+        let error = answer["error"].as_str().unwrap_or_default();
+        assert!(status == 422 && error.contains(expected), "{name}: {status} {answer}");
+        assert!(!error.contains("/tmp"), "{error}");
+    }
+    let own = server.address.as_str();
+    let post = |headers: &[(&str, &str)], body: &str| server.request("POST /api/model?name=a.obj", headers, body);
+    let binary = ("Content-Type", "application/octet-stream");
+    assert_eq!(post(&[("Host", "evil.example"), binary], MODEL).0, 403);
+    assert_eq!(post(&[("Host", own), binary, ("Origin", "http://evil.example")], MODEL).0, 403);
+    for kind in ["text/plain", "application/x-www-form-urlencoded", "multipart/form-data", "application/json", ""] {
+        assert_eq!(post(&[("Host", own), ("Content-Type", kind)], MODEL).0, 415, "{kind}");
+    }
+    let (status, answer) = post(&[("Host", own), binary], &"#".repeat((64 << 20) + 1));
+    assert!(status == 413 && answer.contains("use a smaller model"), "{status} {answer}");
+    let unnamed = server.request("POST /api/model", &[("Host", own), binary], MODEL);
+    assert!(unnamed.0 == 400 && unnamed.1.contains("name"), "{unnamed:?}");
+    assert_eq!(server.get("/").0, 200);
 }
 
 #[test]

@@ -77,6 +77,9 @@ pub(crate) struct View {
     /// Reject a model if a part of it is missing, malformed or not read. Without it, a warning reports what replaces the part
     #[arg(long)]
     strict: bool,
+    /// Read no files that a model names: material libraries and buffers. For models of unknown origin
+    #[arg(long)]
+    pub(crate) no_references: bool,
     /// Print statistics as JSON on stdout. Uses `counters=all` unless the description chooses another value
     #[arg(long)]
     pub(crate) json: bool,
@@ -157,6 +160,7 @@ impl View {
             arrangement: Arrangement::default(),
             memory,
             strict: false,
+            no_references: false,
             json: true,
             is_later_frame: false,
             decisions: Decisions::Immediate,
@@ -197,7 +201,8 @@ impl View {
             return Err(Failure::Usage(format!("the name of a scene is empty: {help}")));
         }
         let requests: Vec<AttributeRequest> = attributes.iter().map(|attribute| attribute.request.clone()).collect();
-        let opened = fragbuf_scene::open_with(name, self.color, &requests, &Limits { memory: memory.left() });
+        let limits = Limits { memory: memory.left(), reads_named_files: !self.no_references };
+        let opened = fragbuf_scene::open_with(name, self.color, &requests, &limits);
         let mut scene = opened.map_err(|error| match error {
             Error::TooLarge { file, what, needed, left, .. } => {
                 Error::TooLarge { file, what, needed, left, limit: memory.whole() }.into()

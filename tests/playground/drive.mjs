@@ -19,6 +19,7 @@ if (unknown.length > 0) throw new Error(`no scenario ${unknown.join(", ")}`);
 /** Errors that a scenario causes on purpose. */
 const EXPECTED = {
     an_error_of_a_request_is_shown: [/503/],
+    a_model_is_opened_and_dropped: [/422/],
     an_answer_that_comes_too_late_is_dropped: [/ERR_ABORTED|ERR_FAILED/],
 };
 

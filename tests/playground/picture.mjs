@@ -2,7 +2,7 @@
  * Scenarios of the picture, its controls and what it costs.
  */
 import assert from "node:assert/strict";
-import { drawn, heading, pixels, text, write } from "./page.mjs";
+import { close, drawn, heading, open, pixels, text, write } from "./page.mjs";
 
 const PLANE = "buffer Mine from kplus_array {\n    uniform { plane: f32 }\n    keep 6;\n    where |f, u| f.depth > u.plane;\n}\n";
 
@@ -163,4 +163,43 @@ export async function two_descriptions_are_compared(page) {
         return hot;
     });
     assert.ok(hot > 100, `${hot} pixels of the heat map`);
+}
+
+const TRIANGLES = "mtllib none.mtl\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nv 0 -1 1\nf 1 2 3\nf 1 4 3\n";
+
+/** A model is opened by the button or dropped, and drawn; what was not read of it is said, and a file without a model is explained. */
+export async function a_model_is_opened_and_dropped(page, { address, browser }) {
+    const scene = page.getByRole("combobox", { name: "scene" });
+    const shown = () => scene.locator("option:checked").textContent();
+    const first = await pixels(page);
+    const chooser = page.waitForEvent("filechooser");
+    await page.getByRole("button", { name: "Open model" }).click();
+    await (await chooser).setFiles({ name: "two triangles.obj", mimeType: "text/plain", buffer: Buffer.from(TRIANGLES) });
+    const model = await drawn(page, first);
+    assert.equal(await shown(), "two_triangles.obj");
+    assert.match(await page.locator("#scene-note").textContent(), /2 triangles; two_triangles\.obj:1: files that the model names are not read: `none\.mtl`/);
+    assert.match(await page.locator("#frame").textContent(), /\b2 triangles/);
+    const drop = async (files) => {
+        const data = await page.evaluateHandle((files) => {
+            const data = new DataTransfer();
+            for (const [name, text] of files) data.items.add(new File([text], name));
+            return data;
+        }, files);
+        await page.locator("#stage").dispatchEvent("drop", { dataTransfer: data });
+    };
+    await drop([["one.obj", TRIANGLES.replace("f 1 4 3\n", "")]]);
+    await drawn(page, model);
+    assert.equal(await shown(), "one.obj");
+    const status = (words) => page.locator("#status").filter({ hasText: words }).waitFor();
+    await drop([["page.obj", "<!doctype html>"]]);
+    await status("page.obj: the file is a page in HTML");
+    await drop([["a.obj", TRIANGLES], ["b.obj", TRIANGLES]]);
+    await status("Drop one model at a time");
+    assert.equal(await shown(), "one.obj");
+    // A page of the same server has the models, too.
+    await page.getByRole("button", { name: "Copy link" }).click();
+    await status("Copied the link");
+    const other = await open(browser, address, { hash: await page.evaluate(() => location.hash) });
+    assert.equal(await other.getByRole("combobox", { name: "scene" }).locator("option:checked").textContent(), "one.obj");
+    await close(other);
 }

@@ -46,6 +46,7 @@ const PAGE: &[Asset] = page![
     SCRIPT "link.mjs",
     SCRIPT "main.mjs",
     SCRIPT "markdown.mjs",
+    SCRIPT "models.mjs",
     SCRIPT "picture.mjs",
     SCRIPT "plot.mjs",
     SCRIPT "problems.mjs",

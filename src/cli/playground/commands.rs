@@ -12,8 +12,9 @@ use tokio::sync::Semaphore;
 use super::child::{self, Job, Printed};
 use super::description::Folder;
 use super::generate::found;
-use super::geometry::scene_name;
+use super::models::Models;
 use super::problem::Problem;
+use super::scene::{MEMORY, RequestedScene};
 
 /// The time that a picture or a histogram may take.
 const PICTURE: Duration = Duration::from_secs(60);
@@ -23,9 +24,6 @@ const CHECK: Duration = Duration::from_secs(300);
 
 /// The states that a check visits at most, which bound its memory.
 const STATES: &str = "5000000";
-
-/// The memory of a picture with its scene.
-const MEMORY: &str = "512MiB";
 
 /// The greatest side of a picture.
 const MOST_PIXELS: u32 = 2048;
@@ -78,31 +76,42 @@ impl Numbers {
 
 impl Picture {
     /// Returns the picture as a PNG in base64, and the statistics of its frame.
-    pub(super) async fn render(&self, folder: &Folder) -> Result<Value, Problem> {
-        folder.check(&self.text)?;
+    pub(super) async fn render(&self, folder: &Folder, models: &Models) -> Result<Value, Problem> {
         let image =
             tempfile::tempdir().map_err(|error| Problem::server(format!("a folder for the picture: {error}")))?;
         let path = image.path().join("picture.png");
-        let mut arguments = vec!["render".to_owned(), "-".to_owned(), "--json".to_owned()];
-        arguments.extend(["--out".to_owned(), path.display().to_string()]);
-        arguments.extend(self.arguments()?);
-        arguments.extend(self.k.map(|k| ["--set".to_owned(), format!("k={k}")]).into_iter().flatten());
-        let printed = run(&arguments, &self.text, folder, (PICTURE, &child::SHORT)).await?;
+        let mut arguments = vec![format!("--out={}", path.display())];
+        arguments.extend(self.k.map(|k| format!("--set=k={k}")));
+        let printed = self.run("render", arguments, (folder, models)).await?;
         let statistics = json_of(&printed)?;
         let png = std::fs::read(&path).map_err(|error| Problem::server(format!("the picture: {error}")))?;
         Ok(json!({ "png": STANDARD.encode(png), "statistics": statistics, "messages": messages(&printed) }))
     }
 
     /// Returns the histogram of the fragments of a pixel.
-    pub(super) async fn predict(&self, folder: &Folder) -> Result<Value, Problem> {
-        folder.check(&self.text)?;
-        let mut arguments = vec!["predict".to_owned(), "-".to_owned(), "--json".to_owned()];
-        arguments.extend(self.arguments()?);
-        json_of(&run(&arguments, &self.text, folder, (PICTURE, &child::SHORT)).await?)
+    pub(super) async fn predict(&self, folder: &Folder, models: &Models) -> Result<Value, Problem> {
+        json_of(&self.run("predict", Vec::new(), (folder, models)).await?)
     }
 
-    /// Returns the arguments that `render` and `predict` share.
-    fn arguments(&self) -> Result<Vec<String>, Problem> {
+    /// Runs a command with the arguments that `render` and `predict` share, and with others.
+    async fn run(
+        &self,
+        command: &str,
+        others: Vec<String>,
+        (folder, models): (&Folder, &Models),
+    ) -> Result<Printed, Problem> {
+        folder.check(&self.text)?;
+        let scene = RequestedScene::find(&self.scene, models)?;
+        let mut arguments = vec![command.to_owned(), "-".to_owned(), "--json".to_owned(), "--no-references".to_owned()];
+        arguments.extend(self.arguments(&scene)?);
+        arguments.extend(others);
+        let mut printed = run(&arguments, &self.text, folder, (PICTURE, &child::SHORT)).await?;
+        printed.stderr = scene.shortened(&printed.stderr);
+        Ok(printed)
+    }
+
+    /// Returns the arguments of the picture.
+    fn arguments(&self, scene: &RequestedScene) -> Result<Vec<String>, Problem> {
         if self.size.iter().any(|side| *side == 0 || *side > MOST_PIXELS) {
             return Err(Problem::request(format!("a side of a picture has from 1 to {MOST_PIXELS} pixels")));
         }
@@ -114,7 +123,7 @@ impl Picture {
         let [width, height] = self.size;
         let device = self.device.as_deref().unwrap_or("auto");
         let mut arguments = vec![
-            format!("--scene={}", scene_name(&self.scene)?),
+            format!("--scene={}", scene.argument()),
             format!("--size={width}x{height}"),
             format!("--camera={}", self.camera.argument()),
             format!("--device={device}"),

@@ -2,56 +2,43 @@
 
 use fragbuf::{Registry, Selection, plan};
 use fragbuf_codegen::Plan;
-use fragbuf_scene::{AttributeRequest, Limits, Scene};
+use fragbuf_scene::{AttributeRequest, Scene};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::description::{Folder, sentence};
+use super::models::Models;
 use super::problem::Problem;
+use super::scene::{MEMORY, RequestedScene};
 use crate::cli::attributes::{color_offset, geometry, model_attributes};
 use crate::cli::memory::{Budget, budget};
 use crate::cli::output::Failure;
-use crate::cli::view;
-
-/// The memory of a scene with its vertices.
-const MEMORY: &str = "512MiB";
-
-/// Colour of parts for which a scene gives none, as for `render`.
-const COLOR: [f32; 4] = [0.15, 0.45, 0.35, 0.4];
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct GeometryRequest {
     text: String,
-    /// The name of a generated scene, without `builtin:`, with its parameters.
+    /// The name of a generated scene, without `builtin:`, with its parameters; or that of a model.
     scene: String,
 }
 
 impl GeometryRequest {
     /// Returns the length of a header in four bytes, the header as JSON, zeros up to a multiple of four bytes, then words: vertices,
     /// normals, indices.
-    pub(super) fn answer(&self, folder: &Folder) -> Result<Vec<u8>, Problem> {
+    pub(super) fn answer(&self, folder: &Folder, models: &Models) -> Result<Vec<u8>, Problem> {
         let registry = Registry::builtin();
         let variant = folder.variant(&self.text, &registry)?;
-        let name = scene_name(&self.scene)?;
+        let requested = RequestedScene::find(&self.scene, models)?;
         let problem = |failure: Failure| Problem::input(failure.message());
         let wanted = model_attributes(&[&variant], &[]).map_err(problem)?;
         let wanted: Vec<AttributeRequest> = wanted.into_iter().map(|attribute| attribute.request).collect();
         let memory = budget(MEMORY).map_err(Problem::server)?;
-        let scene = fragbuf_scene::open_with(&name, COLOR, &wanted, &Limits { memory: memory.left() });
-        let scene = scene.map_err(|error| Problem::input(error.to_string()))?;
+        let scene = requested.open(&wanted, memory.left())?;
         let plan = plan(&variant, &Selection::first(&variant), &registry);
         let plan = plan.map_err(|errors| Problem::input(sentence(&errors)))?;
         let rest = memory.without(scene.bytes(), "the scene").map_err(problem)?;
         packed(&scene, &plan, rest)
     }
-}
-
-/// Returns the name of a generated scene. Files are not read.
-pub(super) fn scene_name(scene: &str) -> Result<String, Problem> {
-    let name = format!("builtin:{scene}");
-    view::check(&name).map_err(|failure| Problem::request(failure.message()))?;
-    Ok(name)
 }
 
 fn packed(scene: &Scene, plan: &Plan, memory: Budget) -> Result<Vec<u8>, Problem> {

@@ -1,8 +1,8 @@
 //! Answers the page itself, and refuses all others.
 //!
 //! Another page of the browser could send requests to the loopback interface, also under a name of its own that resolves to 127.0.0.1. So
-//! `Host` must be this server, and so must `Origin` where a browser sends one; a request with a body must be JSON, which browsers send
-//! to another origin only after a request that is refused here.
+//! `Host` must be this server, and so must `Origin` where a browser sends one; a request with a body must be JSON, or bytes if it is a
+//! model: browsers send either to another origin only after a request that is refused here.
 
 use std::net::SocketAddr;
 
@@ -16,6 +16,9 @@ use super::problem::Problem;
 
 /// The port of HTTP.
 const HTTP: u16 = 80;
+
+/// The path of models.
+const MODEL: &str = "/api/model";
 
 /// The header by which a browser says which page a request is from.
 const SITE: &str = "sec-fetch-site";
@@ -67,9 +70,10 @@ fn refusal(address: SocketAddr, (method, path): (&Method, &str), headers: &Heade
         return refused("the request is not from the page of this server");
     }
     let kind = headers.get(CONTENT_TYPE).and_then(|kind| kind.to_str().ok()).unwrap_or_default();
-    let is_json = kind.split(';').next().is_some_and(|kind| kind.trim().eq_ignore_ascii_case("application/json"));
-    if method == Method::POST && !is_json {
-        let message = "the header `Content-Type` must be `application/json`".to_owned();
+    let kind = kind.split(';').next().unwrap_or_default().trim();
+    let expected = if path == MODEL { "application/octet-stream" } else { "application/json" };
+    if method == Method::POST && !kind.eq_ignore_ascii_case(expected) {
+        let message = format!("the header `Content-Type` must be `{expected}`");
         return Some(Problem { status: StatusCode::UNSUPPORTED_MEDIA_TYPE, message });
     }
     None

@@ -14,7 +14,9 @@ mod editor;
 mod generate;
 mod geometry;
 mod guard;
+mod models;
 mod problem;
+mod scene;
 mod server;
 mod start;
 

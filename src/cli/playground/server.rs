@@ -1,6 +1,6 @@
 //! The server: routes, bounds and panics.
 //!
-//! A request has at most [`MOST_BYTES`]. What is answered in this process runs on a thread of its own for at most [`MOST_TIME`]; if it
+//! A request has at most [`MOST_BYTES`], and a model [`models::MOST_BYTES`]. What is answered in this process runs on a thread of its own for at most [`MOST_TIME`]; if it
 //! panics, this request alone fails.
 
 use std::net::{SocketAddr, TcpListener};
@@ -9,12 +9,13 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use axum::body::Bytes;
-use axum::extract::{DefaultBodyLimit, State};
+use axum::extract::{DefaultBodyLimit, FromRef, Query, State};
 use axum::http::{StatusCode, Uri, header};
 use axum::middleware::{from_fn_with_state, map_response};
 use axum::response::{IntoResponse as _, Response};
 use axum::routing::{get, post};
 use axum::{Json, Router};
+use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use tokio::time::timeout;
@@ -25,10 +26,11 @@ use super::description::Folder;
 use super::editor::Place;
 use super::generate::{Download, Generate};
 use super::geometry::GeometryRequest;
+use super::models::{self, SharedModels};
 use super::problem::Problem;
 use super::{assets, guard, start};
 
-/// The bytes of a request.
+/// The bytes of a request that is not a model.
 const MOST_BYTES: usize = 1 << 20;
 
 /// The time of an answer in this process.
@@ -40,13 +42,15 @@ pub(super) fn run(listener: TcpListener, address: SocketAddr, folder: Option<Pat
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
     runtime.block_on(async move {
         let listener = tokio::net::TcpListener::from_std(listener)?;
-        axum::serve(listener, router(address, Arc::new(Folder(folder)))).await
+        let app = App { folder: Arc::new(Folder(folder)), models: SharedModels::default() };
+        axum::serve(listener, router(address, app)).await
     })
 }
 
-fn router(address: SocketAddr, folder: Arc<Folder>) -> Router {
+fn router(address: SocketAddr, app: App) -> Router {
     Router::new()
-        .route("/api/start", get(async || start::answer().await.map(Json)))
+        .route("/api/start", get(start))
+        .route("/api/model", post(model).layer(DefaultBodyLimit::max(models::MOST_BYTES)))
         .route("/api/analyse", post(analyse))
         .route("/api/hover", post(hover))
         .route("/api/complete", post(complete))
@@ -60,53 +64,90 @@ fn router(address: SocketAddr, folder: Arc<Folder>) -> Router {
         .layer(DefaultBodyLimit::max(MOST_BYTES))
         .layer(map_response(explained))
         .layer(from_fn_with_state(address, guard::check))
-        .with_state(folder)
+        .with_state(app)
 }
 
-type App = State<Arc<Folder>>;
+/// What the requests share.
+#[derive(Clone)]
+struct App {
+    folder: Arc<Folder>,
+    models: SharedModels,
+}
 
-async fn analyse(State(folder): App, body: Bytes) -> Result<Json<Value>, Problem> {
+impl FromRef<App> for Arc<Folder> {
+    fn from_ref(app: &App) -> Self {
+        Arc::clone(&app.folder)
+    }
+}
+
+impl FromRef<App> for SharedModels {
+    fn from_ref(app: &App) -> Self {
+        Arc::clone(&app.models)
+    }
+}
+
+type UserFiles = State<Arc<Folder>>;
+
+async fn start(State(models): State<SharedModels>) -> Result<Json<Value>, Problem> {
+    start::answer(&models).await.map(Json)
+}
+
+/// The name of a model's file, in the query.
+#[derive(Deserialize)]
+struct ModelName {
+    name: String,
+}
+
+async fn model(
+    State(models): State<SharedModels>,
+    Query(ModelName { name }): Query<ModelName>,
+    body: Bytes,
+) -> Result<Json<Value>, Problem> {
+    here(move || models.add(&name, body).map(Json)).await
+}
+
+async fn analyse(State(folder): UserFiles, body: Bytes) -> Result<Json<Value>, Problem> {
     let request: Analyse = parsed(&body)?;
     here(move || request.answer(&folder).map(Json)).await
 }
 
-async fn hover(State(folder): App, body: Bytes) -> Result<Json<Value>, Problem> {
+async fn hover(State(folder): UserFiles, body: Bytes) -> Result<Json<Value>, Problem> {
     let request: Place = parsed(&body)?;
     here(move || request.hover(&folder).map(Json)).await
 }
 
-async fn complete(State(folder): App, body: Bytes) -> Result<Json<Value>, Problem> {
+async fn complete(State(folder): UserFiles, body: Bytes) -> Result<Json<Value>, Problem> {
     let request: Place = parsed(&body)?;
     here(move || request.complete(&folder).map(Json)).await
 }
 
-async fn generate(State(folder): App, body: Bytes) -> Result<Json<Value>, Problem> {
+async fn generate(State(folder): UserFiles, body: Bytes) -> Result<Json<Value>, Problem> {
     let request: Generate = parsed(&body)?;
     here(move || request.answer(&folder).map(Json)).await
 }
 
-async fn download(State(folder): App, body: Bytes) -> Result<Response, Problem> {
+async fn download(State(folder): UserFiles, body: Bytes) -> Result<Response, Problem> {
     let request: Download = parsed(&body)?;
     let bytes = here(move || request.answer(&folder)).await?;
     let headers = [(header::CONTENT_TYPE, "application/zip")];
     Ok((headers, bytes).into_response())
 }
 
-async fn geometry(State(folder): App, body: Bytes) -> Result<Response, Problem> {
+async fn geometry(State(App { folder, models }): State<App>, body: Bytes) -> Result<Response, Problem> {
     let request: GeometryRequest = parsed(&body)?;
-    let bytes = here(move || request.answer(&folder)).await?;
+    let bytes = here(move || request.answer(&folder, &models)).await?;
     Ok(([(header::CONTENT_TYPE, "application/octet-stream")], bytes).into_response())
 }
 
-async fn render(State(folder): App, body: Bytes) -> Result<Json<Value>, Problem> {
-    parsed::<Picture>(&body)?.render(&folder).await.map(Json)
+async fn render(State(App { folder, models }): State<App>, body: Bytes) -> Result<Json<Value>, Problem> {
+    parsed::<Picture>(&body)?.render(&folder, &models).await.map(Json)
 }
 
-async fn predict(State(folder): App, body: Bytes) -> Result<Json<Value>, Problem> {
-    parsed::<Picture>(&body)?.predict(&folder).await.map(Json)
+async fn predict(State(App { folder, models }): State<App>, body: Bytes) -> Result<Json<Value>, Problem> {
+    parsed::<Picture>(&body)?.predict(&folder, &models).await.map(Json)
 }
 
-async fn check(State(folder): App, body: Bytes) -> Result<Json<Value>, Problem> {
+async fn check(State(folder): UserFiles, body: Bytes) -> Result<Json<Value>, Problem> {
     parsed::<Check>(&body)?.answer(&folder).await.map(Json)
 }
 
@@ -125,7 +166,10 @@ async fn asset(uri: Uri) -> Response {
 async fn explained(response: Response) -> Response {
     match response.status() {
         StatusCode::PAYLOAD_TOO_LARGE => {
-            let message = format!("a request has at most {MOST_BYTES} bytes: shorten the description");
+            let message = format!(
+                "a request has at most {MOST_BYTES} bytes, and a model {}: shorten the description, or use a smaller model",
+                models::MOST_BYTES
+            );
             Problem { status: StatusCode::PAYLOAD_TOO_LARGE, message }.into_response()
         }
         _ => response,

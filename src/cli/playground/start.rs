@@ -7,6 +7,7 @@ use fragbuf_scene::BUILTIN_SCENES;
 use serde_json::{Value, json};
 
 use super::child::{self, Job};
+use super::models::Models;
 use super::problem::Problem;
 
 /// The time that drivers may take to list their devices.
@@ -23,7 +24,7 @@ const EXAMPLES: &[(&str, &str)] = &[
 ];
 
 /// Returns what the page offers.
-pub(super) async fn answer() -> Result<Value, Problem> {
+pub(super) async fn answer(models: &Models) -> Result<Value, Problem> {
     let devices = devices().await?;
     let registry = Registry::builtin();
     let technique = |technique: &vocabulary::Technique| {
@@ -50,6 +51,7 @@ pub(super) async fn answer() -> Result<Value, Problem> {
         "techniques": registry.techniques().iter().map(technique).collect::<Vec<_>>(),
         "examples": EXAMPLES.iter().map(example).collect::<Vec<_>>(),
         "scenes": scenes.collect::<Vec<_>>(),
+        "models": models.list(),
         "devices": devices,
         "targets": TARGETS.iter().map(|target| json!({ "name": target.name, "summary": target.summary })).collect::<Vec<_>>(),
     }))

@@ -64,6 +64,9 @@ pub(crate) struct Predict {
     /// Memory budget for the scene and for counting, as for `render`
     #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = memory::budget)]
     memory: Budget,
+    /// Read no files that a model names, as for `render`
+    #[arg(long)]
+    no_references: bool,
     /// SVG file to write the histogram to, with k marked
     #[cfg(feature = "figures")]
     #[arg(long, value_name = "SVG")]
@@ -90,6 +93,7 @@ impl Predict {
         let mut view = View::measured(self.scene.clone(), self.camera, self.size, measured, self.memory);
         view.attributes.clone_from(&self.attributes);
         view.arrangement = self.arrangement;
+        view.no_references = self.no_references;
         let changed = (self.description.as_str(), self.set.as_slice());
         if let Some(Some(path)) = &self.coplanarity {
             check_map(path)?;

@@ -15,12 +15,14 @@ use crate::model::ModelObject;
 pub struct Limits {
     /// The bytes that reading a scene may use at one time: its files after decompression, and the scene itself.
     pub memory: u64,
+    /// Whether files are read that the model names: material libraries and buffers.
+    pub reads_named_files: bool,
 }
 
 impl Default for Limits {
-    /// Returns limits of 2 GiB.
+    /// Returns limits of 2 GiB, with the files that a model names.
     fn default() -> Self {
-        Limits { memory: 2 << 30 }
+        Limits { memory: 2 << 30, reads_named_files: true }
     }
 }
 
@@ -44,6 +46,7 @@ pub(crate) struct Budget {
     left: Cell<u64>,
     /// The bytes of a vertex of a model: [`MODEL_VERTEX`], and its attributes.
     vertex: u64,
+    reads_named_files: bool,
     /// The files that were opened.
     files: RefCell<Vec<PathBuf>>,
 }
@@ -57,7 +60,13 @@ pub(crate) struct Held<'a> {
 
 impl Budget {
     pub(crate) fn new(limits: &Limits) -> Self {
-        Budget { limit: limits.memory, left: Cell::new(limits.memory), vertex: MODEL_VERTEX, files: RefCell::default() }
+        Budget {
+            limit: limits.memory,
+            left: Cell::new(limits.memory),
+            vertex: MODEL_VERTEX,
+            reads_named_files: limits.reads_named_files,
+            files: RefCell::default(),
+        }
     }
 
     /// Returns a budget for models with these attributes.
@@ -69,6 +78,11 @@ impl Budget {
     /// Records that a file is opened.
     pub(crate) fn open(&self, file: &Path) {
         self.files.borrow_mut().push(file.to_owned());
+    }
+
+    /// Returns whether files are read that the model names.
+    pub(crate) fn reads_named_files(&self) -> bool {
+        self.reads_named_files
     }
 
     /// Returns the files that were opened.

@@ -120,6 +120,14 @@ fn libraries(
     budget: &Budget,
 ) -> Result<Vec<(String, Vec<u8>)>, Error> {
     beside(folder, statement).map_err(|error| error.in_file(warnings.file()))?;
+    if !budget.reads_named_files() {
+        let name = text::without_comment(statement);
+        warnings.line(WarningKind::NotRead, name, line, || {
+            let message = format!("files that the model names are not read: {}", text::quoted(name));
+            Message::new(message, "its materials have the default colour")
+        });
+        return Ok(Vec::new());
+    }
     let mut found = Vec::new();
     let mut rest = statement;
     while !rest.is_empty() {

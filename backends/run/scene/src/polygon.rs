@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn the_lists_of_a_face_are_within_the_budget() {
-        let budget = Budget::new(&Limits { memory: 1 << 20 });
+        let budget = Budget::new(&Limits { memory: 1 << 20, ..Limits::default() });
         let mut triangulator = Triangulator::new();
         for corners in [1001, 5, 3001] {
             let mut object = comb(corners);

@@ -14,7 +14,7 @@ fn loaded_within(name: &str, bytes: &[u8], requests: &[AttributeRequest], memory
     let folder = TempDir::new().unwrap();
     let path = folder.path().join(name);
     std::fs::write(&path, bytes).unwrap();
-    load_with(&path, [1.0; 4], requests, &Limits { memory })
+    load_with(&path, [1.0; 4], requests, &Limits { memory, ..Limits::default() })
 }
 
 fn loaded(name: &str, bytes: &[u8], requests: &[AttributeRequest]) -> Result<Scene, Error> {

@@ -15,7 +15,7 @@ use tempfile::TempDir;
 const MODELS: u64 = 10_000;
 
 /// The memory of a model. Lists of an element that is malformed later may need it all.
-const LIMITS: Limits = Limits { memory: 4 << 20 };
+const LIMITS: Limits = Limits { memory: 4 << 20, reads_named_files: true };
 
 /// A generator of random numbers: SplitMix64.
 struct Rng(u64);

@@ -24,7 +24,7 @@ fn loaded(files: &[(&str, &[u8])], memory: u64) -> Result<Scene, Error> {
     for (path, (_, bytes)) in paths.iter().zip(files) {
         std::fs::write(path, bytes).unwrap();
     }
-    load(&paths[0], COLOR, &Limits { memory })
+    load(&paths[0], COLOR, &Limits { memory, ..Limits::default() })
 }
 
 fn too_large(files: &[(&str, &[u8])], memory: u64) -> (String, u64, u64) {
@@ -578,7 +578,8 @@ fn lengths_in_a_glb_are_checked() {
 
 #[test]
 fn generated_scenes_count() {
-    let error = open("builtin:hairball,strands=100000", COLOR, &Limits { memory: SMALL }).unwrap_err();
+    let error =
+        open("builtin:hairball,strands=100000", COLOR, &Limits { memory: SMALL, ..Limits::default() }).unwrap_err();
     let Error::TooLarge { file, limit, .. } = &error else { panic!("{error}") };
     assert_eq!((file.as_str(), *limit), ("builtin:hairball", SMALL));
     assert!(error.to_string().contains("of 1048576 bytes are left: use a smaller model or a larger budget"), "{error}");

@@ -33,6 +33,37 @@ fn loaded(files: &[(&str, &str)]) -> (Scene, Vec<String>) {
     (scene, warnings)
 }
 
+/// A model of unknown origin could name any file of the machine.
+#[test]
+fn files_that_a_model_names_are_read_only_if_the_limits_allow_it() {
+    let folder = TempDir::new().unwrap();
+    let limits = Limits { reads_named_files: false, ..Limits::default() };
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("red.mtl", "newmtl red\nKd 1 0 0\n");
+    write("m.obj", &format!("mtllib red.mtl\n{QUAD}usemtl red\nf 1 2 3\n"));
+    let path = folder.path().join("m.obj");
+    let scene = load(&path, COLOR, &limits).unwrap();
+    assert_eq!((colors(&scene), &scene.files), (vec![COLOR], &vec![path]));
+    let warning = scene.warnings[0].to_string();
+    assert!(
+        warning.ends_with(
+            "m.obj:1: files that the model names are not read: `red.mtl`: its materials have the default colour"
+        ),
+        "{warning}"
+    );
+    // Whether a file exists is not told either.
+    write("m.obj", &format!("mtllib /none/none.mtl\n{QUAD}usemtl red\nf 1 2 3\n"));
+    let scene = load(&folder.path().join("m.obj"), COLOR, &limits).unwrap();
+    assert!(scene.warnings[0].to_string().contains("files that the model names are not read: `/none/none.mtl`"));
+    write("m.bin", "");
+    write("m.gltf", r#"{"asset":{"version":"2.0"},"buffers":[{"uri":"m.bin","byteLength":0}]}"#);
+    let error = load(&folder.path().join("m.gltf"), COLOR, &limits).unwrap_err().to_string();
+    assert!(
+        error.contains("buffer 0: files that the model names are not read: `m.bin`: convert the model to GLB"),
+        "{error}"
+    );
+}
+
 /// Loads a model without warnings.
 fn clean(files: &[(&str, &str)]) -> Scene {
     let (scene, warnings) = loaded(files);

@@ -18,12 +18,14 @@ export class ApiError extends Error {
 /**
  * Sends a request. Returns the response, whose status is a success.
  * @param {string} path
- * @param {object | null} body null for GET
+ * @param {object | Blob | null} body null for GET
  * @param {AbortSignal} [signal]
  */
 async function request(path, body, signal) {
     const options = { signal, cache: "no-store" };
-    if (body)
+    if (body instanceof Blob)
+        Object.assign(options, { method: "POST", headers: { "content-type": "application/octet-stream" }, body });
+    else if (body)
         Object.assign(options, { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(body) });
     let response;
     try {
@@ -67,6 +69,8 @@ export const api = {
     render: (body, signal) => json("render", body, signal),
     predict: (body, signal) => json("predict", body, signal),
     check: (body, signal) => json("check", body, signal),
+    /** @param {File} file */
+    model: (file, signal) => json(`model?name=${encodeURIComponent(file.name)}`, file, signal),
 };
 
 /**

@@ -78,10 +78,12 @@ function name(key, title) {
  */
 export function createView(elements, { scenes, devices }, store) {
     const { scene, parameters, note, width, height, device } = elements;
-    fill(
-        scene,
-        scenes.map(({ name, summary }) => element("option", { value: name, title: summary }, name)),
-    );
+    const listScenes = () =>
+        fill(
+            scene,
+            scenes.map(({ name, label, summary }) => element("option", { value: name, title: summary }, label ?? name)),
+        );
+    listScenes();
     fill(
         device,
         ["auto", ...devices.filter((name) => name !== "auto")].map((name) => element("option", { value: name }, name)),
@@ -118,6 +120,16 @@ export function createView(elements, { scenes, devices }, store) {
     store.subscribe((state, changed) => {
         if (["scene", "size", "device"].some((name) => changed.has(name))) show(state);
     });
+    return {
+        /** Adds a scene to the list, in place of one of the same name, and shows it. */
+        open(row) {
+            const index = scenes.findIndex(({ name }) => name === row.name);
+            scenes.splice(index < 0 ? scenes.length : index, 1, row);
+            listScenes();
+            store.set({ scene: row.name, camera: null });
+            show(store.value);
+        },
+    };
 }
 
 function sideOf(input) {

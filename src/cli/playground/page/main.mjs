@@ -13,6 +13,7 @@ import { createCosts } from "./costs.mjs";
 import { byId, count, debounced, milliseconds } from "./dom.mjs";
 import { createEditor } from "./editor.mjs";
 import { decode, encode } from "./link.mjs";
+import { createModels, modelRow } from "./models.mjs";
 import { createPicture } from "./picture.mjs";
 import { createProblems } from "./problems.mjs";
 import { parseScene, sceneName } from "./scenes.mjs";
@@ -38,6 +39,7 @@ const elements = (prefix, names) => Object.fromEntries(names.map((name) => [name
 
 async function run() {
     const start = await api.start();
+    start.scenes.push(...start.models.map(modelRow));
     byId("about").textContent = `fragbuf ${start.version}`;
     const link = await readLink(start);
     const scene = start.scenes.find(({ name }) => name === "marbles") ?? start.scenes[0];
@@ -56,7 +58,10 @@ async function readLink({ scenes }) {
     try {
         const fields = await decode(location.hash);
         if (fields?.scene && !parseScene(scenes, fields.scene)) {
-            failing("link")(new Error(`The link names the scene ${fields.scene}, which this version does not have.`));
+            const message = fields.scene.startsWith("model:")
+                ? "The link shows a model of its sender: open the model here to see it."
+                : `The link names the scene ${fields.scene}, which this version does not have.`;
+            failing("link")(new Error(message));
             delete fields.scene;
         }
         return fields ?? {};
@@ -86,7 +91,18 @@ async function createPage(start, store) {
         editor.replace(text);
     });
     presets.show(store.value.text);
-    createView({ ...elements("", ["scene", "parameters", "width", "height", "device"]), note: byId("scene-note") }, start, store);
+    const view = createView({ ...elements("", ["scene", "parameters", "width", "height", "device"]), note: byId("scene-note") }, start, store);
+    createModels(
+        { area: byId("picture-pane"), input: byId("model-input"), open: byId("model-open") },
+        {
+            api,
+            opened(row, message) {
+                view.open(row);
+                status.say(message);
+            },
+            failed: failing("model"),
+        },
+    );
     const values = createValues(elements("", ["k", "uniforms"]), store);
 
     const request = () => {

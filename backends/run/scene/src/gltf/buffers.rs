@@ -44,6 +44,13 @@ pub(super) fn read(
                         format!("{} is not downloaded: save it beside the model, and name that file", quoted(uri));
                     return Err(error_at(message));
                 }
+                None if !budget.reads_named_files() => {
+                    let message = format!(
+                        "files that the model names are not read: {}: convert the model to GLB, which holds its buffers",
+                        quoted(uri)
+                    );
+                    return Err(error_at(message));
+                }
                 None => {
                     let name = String::from_utf8(percent_decoded(uri));
                     let name = name.map_err(|_| error_at("its URI is not UTF-8 after decoding".to_owned()))?;
