@@ -43,6 +43,48 @@ export async function lost_fragments_are_shown(page) {
     await page.locator(".warn").filter({ hasText: /fragments are lost: \w+ / }).waitFor();
 }
 
+/** The plot shows the time of each pass by its name in the manifest, also of passes in a loop. */
+export async function webgpu_times_are_shown_by_pass(page) {
+    for (const text of ["buffer Listed from ab_ll {\n}\n", "buffer Peeled from f2b_ll {\n}\n"]) {
+        const passes = await page.evaluate(passesOf, text);
+        await page.getByRole("tab", { name: "Costs" }).click();
+        await write(page, text);
+        const legend = page.locator("#times .legend li");
+        for (const pass of passes) await legend.filter({ hasText: pass }).first().waitFor();
+        assert.match(await page.locator("#frame").textContent(), /^WebGPU.* ms/);
+        const shown = await legend.evaluateAll((items) =>
+            items.map((item) => [".name", ".figure"].map((part) => item.querySelector(part).textContent)),
+        );
+        assert.deepEqual(shown.map(([name]) => name).sort(), [...passes].sort(), text);
+        for (const [name, time] of shown) assert.match(time, /^\d[\d.,]* ms$/, name);
+        const label = await page.locator("#times svg").getAttribute("aria-label");
+        for (const pass of passes) assert.ok(label.includes(`${pass} `), label);
+    }
+}
+
+/** Where the browser has no timestamps, the plot shows the time of the whole frame. */
+export async function webgpu_without_timestamps_shows_the_time_of_the_frame(page) {
+    await page.addInitScript(() => {
+        const { requestDevice } = GPUAdapter.prototype;
+        GPUAdapter.prototype.requestDevice = function (descriptor) {
+            const requiredFeatures = descriptor.requiredFeatures.filter((name) => name !== "timestamp-query");
+            return requestDevice.call(this, { ...descriptor, requiredFeatures });
+        };
+    });
+    await page.reload();
+    await page.locator("#frame").filter({ hasText: /^WebGPU.* ms/ }).waitFor();
+    await page.getByRole("tab", { name: "Costs" }).click();
+    const names = await page.locator("#times .legend .name").allTextContents();
+    assert.deepEqual(names, ["frame", "prepare"]);
+}
+
+/** Runs in the page. Returns the names of the passes in the manifest of a description. */
+async function passesOf(text) {
+    const { api } = await import("/api.mjs");
+    const { manifest } = await api.generate({ text, target: "wgsl", form: "program" });
+    return [...new Set(manifest.steps.flatMap((step) => (step.do === "pass" ? [step.pass] : [])))];
+}
+
 /** Runs in the page. Returns the number of pixels that differ from the server's by more than 2 of 255. */
 async function compare(text) {
     const { decode } = await import("/link.mjs");
