@@ -16,6 +16,7 @@ mod peeling_loop;
 #[path = "oracle/scene.rs"]
 mod scene;
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -101,8 +102,22 @@ fn problem(run: &Value, expected: &Expected) -> Option<String> {
     if loops.clone().any(|looped| looped["isMet"] != true) {
         return Some(format!("a loop ended at its limit: {}", run["loops"]));
     }
+    if let Some(problem) = run["times"].as_array().unwrap().iter().find_map(|times| time_problem(times, expected)) {
+        return Some(problem);
+    }
     let slices = run["slices"].as_u64().unwrap();
     (slices != expected.slices).then(|| format!("{slices} slices, not {}", expected.slices))
+}
+
+/// Returns what is wrong with the times of a frame: each pass that ran has one, finite and not negative.
+fn time_problem(times: &Value, expected: &Expected) -> Option<String> {
+    let passes = times["passes"].as_object().unwrap();
+    let names: BTreeSet<String> = passes.keys().cloned().collect();
+    // JSON has no infinities.
+    let are_times = passes.values().all(|ms| ms.as_f64().is_some_and(|ms| ms >= 0.0));
+    let is_whole = times["unmeasured"] == 0 && times["reason"].is_null();
+    (names != expected.timed || !are_times || !is_whole)
+        .then(|| format!("the times are {times}, of the passes {:?}", expected.timed))
 }
 
 #[test]
@@ -183,6 +198,16 @@ fn program(description: &str) -> fragbuf::Generation {
 #[test]
 fn formulas_host_functions_and_slots() {
     assert_eq!(node("parts.mjs", &[]), "the parts are right\n");
+}
+
+/// Every run of a pass is measured, runs are summed by the pass's name, and nothing is measured unless it is requested.
+#[test]
+fn passes_have_times_if_they_are_requested() {
+    let folder = folder("times");
+    for (name, description) in [("list", "buffer List from ab_ll { }"), ("peeling", "buffer Peeling from f2b_ll { }")] {
+        jobs::write_plan(&program(description), &folder.join(name));
+    }
+    assert_eq!(node("times.mjs", &[&folder]), "the times are right\n");
 }
 
 /// Mistakes of a caller, what an adapter lacks, lost devices and lost fragments: each is an error or a report, in words.

@@ -80,7 +80,13 @@ fn the_whole_page_works_by_keyboard_in_every_window_and_by_link() {
 
 #[test]
 fn webgpu_in_the_page_draws_the_picture() {
-    run(&["webgpu_draws_what_the_cpu_device_draws", "a_device_of_the_server_is_chosen", "lost_fragments_are_shown"]);
+    run(&[
+        "webgpu_draws_what_the_cpu_device_draws",
+        "a_device_of_the_server_is_chosen",
+        "lost_fragments_are_shown",
+        "webgpu_times_are_shown_by_pass",
+        "webgpu_without_timestamps_shows_the_time_of_the_frame",
+    ]);
 }
 
 /// Returns every module of `tests/playground` with its scenarios, so that none is forgotten above.

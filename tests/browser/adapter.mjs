@@ -13,6 +13,6 @@ export async function adapter() {
     const found = await gpu.requestAdapter();
     if (!found) throw new Error("Dawn finds no adapter");
     // If one of these is collected, Dawn frees what the others use.
-    globalThis.kept = [gpu, found];
+    globalThis.kept = [...(globalThis.kept ?? []), gpu, found];
     return found;
 }

@@ -9,7 +9,8 @@ const FORMAT = "rgba16float";
 export async function drawAll(adapter, jobs, load) {
     const uncaptured = [];
     const results = {};
-    const device = await adapter.requestDevice();
+    // The plans of the tests need no feature; passes of some runs are timed.
+    const device = await adapter.requestDevice({ requiredFeatures: ["timestamp-query"] });
     device.addEventListener("uncapturederror", ({ error }) => uncaptured.push(error.message));
     for (const job of jobs) {
         try {
@@ -42,7 +43,7 @@ async function drawJob(adapter, device, job, load) {
     for (const run of job.runs) {
         const options = { size, format: FORMAT, symbols: job.symbols, onLoss: () => {}, ...run.options };
         const buffer = await FragmentBuffer.create(device, manifest, loadFile, options);
-        const result = { slices: buffer.slices, images: [], lost: [], loops: [], drawn: 0, every: 0 };
+        const result = { slices: buffer.slices, images: [], lost: [], loops: [], times: [], drawn: 0, every: 0 };
         for (const index of run.scenes) {
             const { mesh, count, objects } = scenes[index];
             const call = {
@@ -68,6 +69,7 @@ async function drawJob(adapter, device, job, load) {
                 result.loops.push((await buffer.render(call)).loops);
             }
             result.lost.push((await buffer.counters()).lost);
+            if (run.options.times) result.times.push(await buffer.times());
             result.images.push(await pixels(device, target, size));
         }
         buffer.destroy();

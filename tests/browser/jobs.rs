@@ -3,6 +3,7 @@
 //! Scenes are quads, two triangles each, of constant depth; some have equal depths. The scripts get files, so that this module needs no
 //! device.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -54,6 +55,8 @@ pub struct Expected {
     pub images: Vec<Vec<[f64; 3]>>,
     pub slices: u64,
     pub loses_nothing: bool,
+    /// The passes that have times; empty where no times are requested.
+    pub timed: BTreeSet<String>,
 }
 
 /// The runs of a job.
@@ -181,20 +184,24 @@ fn job(name: &str, variant: &Variant, (registry, judge): (&Registry, Judge), run
         let images = images((variant, registry), judge, plan, scenes, &textures, settings);
         let slices = slice.map_or(1, |rows| u64::from(SIZE[1].div_ceil(rows)));
         let numbers: Vec<usize> = (0..scenes.len()).collect();
-        let expected = Expected { what: what.to_owned(), images, slices, loses_nothing };
+        // Without readbacks, boxes of objects are not drawn.
+        let has_boxes = options["readback"] != "none";
+        let drawn = plan.passes.iter().filter(|pass| has_boxes || pass.objects != Objects::Boxes);
+        let timed = drawn.filter(|_| options["times"] == true).map(|pass| pass.name.clone()).collect();
+        let expected = Expected { what: what.to_owned(), images, slices, loses_nothing, timed };
         (json!({ "scenes": numbers, "options": options }), expected)
     };
     let mut all = Vec::new();
     match runs {
-        Runs::Whole => all.push(run("whole", &scenes[..1], None, Sizing::Auto, json!({}))),
+        Runs::Whole => all.push(run("whole", &scenes[..1], None, Sizing::Auto, json!({ "times": true }))),
         Runs::All => {
             all.push(run("whole", &scenes, None, Sizing::Auto, json!({})));
-            all.push(run("slices", &scenes[..1], Some(5), Sizing::Auto, json!({ "rows": 5 })));
+            all.push(run("slices", &scenes[..1], Some(5), Sizing::Auto, json!({ "rows": 5, "times": true })));
             let is_conditional = |until| until != fragbuf_codegen::LoopUntil::Times;
             // A loop of a thousand iterations takes its time on a processor.
             if !plan.frame.loops.iter().any(|looped| is_conditional(looped.until)) {
                 let sizing = Sizing::Reserve(PoolSize::Fragments(QUADS * SIZE[0] * SIZE[1]));
-                all.push(run("no readback", &scenes[..2], None, sizing, json!({ "readback": "none" })));
+                all.push(run("no readback", &scenes[..2], None, sizing, json!({ "readback": "none", "times": true })));
             }
             if plan.frame.decisions().any(|decision| decision.may_lag) {
                 all.push(run("decisions that lag", &scenes, None, Sizing::Auto, json!({ "readback": "lag" })));

@@ -43,6 +43,53 @@ export async function lost_fragments_are_shown(page) {
     await page.locator(".warn").filter({ hasText: /fragments are lost: \w+ / }).waitFor();
 }
 
+/** The plot shows the time of each pass by its name in the manifest, also of passes in a loop. */
+export async function webgpu_times_are_shown_by_pass(page) {
+    await page.getByRole("tab", { name: "Costs" }).click();
+    // Each description has other passes than the one before it.
+    for (const text of ["buffer Peeled from f2b_ll {\n}\n", "buffer Listed from ab_ll {\n}\n"]) {
+        const passes = await page.evaluate(passesOf, text);
+        await write(page, text);
+        const shown = await page.waitForFunction(timesOf, passes.sort(), { polling: 50 });
+        const { times, label } = await shown.jsonValue();
+        for (const [name, time] of Object.entries(times)) assert.match(time, /^\d[\d.,]* ms$/, name);
+        for (const pass of passes) assert.ok(label.includes(`${pass} ${times[pass]}`), label);
+        assert.match(await page.locator("#frame").textContent(), /^WebGPU.* ms/);
+    }
+}
+
+/** Runs in the page. Returns the legend of the plot and its text, if the legend has exactly these passes. */
+function timesOf(passes) {
+    const part = (item, name) => item.querySelector(name).textContent;
+    const items = [...document.querySelectorAll("#times .legend li")];
+    const times = Object.fromEntries(items.map((item) => [part(item, ".name"), part(item, ".figure")]));
+    if (Object.keys(times).sort().join() !== passes.join()) return false;
+    return { times, label: document.querySelector("#times svg").getAttribute("aria-label") };
+}
+
+/** Where the browser has no timestamps, the plot shows the time of the whole frame. */
+export async function webgpu_without_timestamps_shows_the_time_of_the_frame(page) {
+    await page.addInitScript(() => {
+        const { requestDevice } = GPUAdapter.prototype;
+        GPUAdapter.prototype.requestDevice = function (descriptor) {
+            const requiredFeatures = descriptor.requiredFeatures.filter((name) => name !== "timestamp-query");
+            return requestDevice.call(this, { ...descriptor, requiredFeatures });
+        };
+    });
+    await page.reload();
+    await page.locator("#frame").filter({ hasText: /^WebGPU.* ms/ }).waitFor();
+    await page.getByRole("tab", { name: "Costs" }).click();
+    const names = await page.locator("#times .legend .name").allTextContents();
+    assert.deepEqual(names, ["frame", "prepare"]);
+}
+
+/** Runs in the page. Returns the names of the passes in the manifest of a description. */
+async function passesOf(text) {
+    const { api } = await import("/api.mjs");
+    const { manifest } = await api.generate({ text, target: "wgsl", form: "program" });
+    return [...new Set(manifest.steps.flatMap((step) => (step.do === "pass" ? [step.pass] : [])))];
+}
+
 /** Runs in the page. Returns the number of pixels that differ from the server's by more than 2 of 255. */
 async function compare(text) {
     const { decode } = await import("/link.mjs");

@@ -7,19 +7,22 @@ import { checkedSize } from "./requirements.mjs";
 const READBACKS = ["all", "lag", "loops", "none"];
 const OPTIONS = [
     "size", "format", "symbols", "perPixel", "readback", "memory", "rows", "vertexBuffers", "primitive", "material", "onLoss",
+    "times",
 ];
 const CALL = ["target", "clear", "viewProjection", "draw", "uniforms", "symbols", "textures", "objects"];
 
 /** Returns the caller's options with the defaults. */
 export function checkedOptions(options = {}) {
     checkNames(options, OPTIONS, "option");
-    const { format, readback = "all", perPixel = 8, memory = 2 ** 31, rows, symbols = {} } = options;
+    const { format, readback = "all", perPixel = 8, memory = 2 ** 31, rows, symbols = {}, times = false } = options;
     if (typeof format !== "string") throw new Error("`format` is missing: pass the texture format of your target, such as \"rgba8unorm\"");
     if (!READBACKS.includes(readback)) throw new Error(`\`readback\` is ${JSON.stringify(readback)}: pass one of ${READBACKS.join(", ")}`);
     if (!(perPixel > 0)) throw new Error("`perPixel` is a number of fragments above 0");
     if (rows !== undefined && !(Number.isInteger(rows) && rows > 0)) throw new Error("`rows` is a whole number of rows above 0");
+    if (typeof times !== "boolean") throw new Error(`\`times\` is ${JSON.stringify(times)}: pass true or false`);
     const onLoss = options.onLoss ?? warnOfLosses();
-    return { ...options, size: checkedSize(options.size), format, readback, perPixel, memory, rows, symbols, onLoss };
+    const size = checkedSize(options.size);
+    return { ...options, size, format, readback, perPixel, memory, rows, symbols, times, onLoss };
 }
 
 /** Checks the arguments of a frame that no other function checks, and returns the function that draws the scene. */

@@ -19,6 +19,8 @@ export interface RequirementOptions {
     symbols?: Record<string, number>;
     /** As in {@link Options}. */
     perPixel?: number;
+    /** As in {@link Options}: requests the feature `timestamp-query`, if the adapter has it. */
+    times?: boolean;
 }
 
 /**
@@ -60,6 +62,11 @@ export interface Options {
     material?(file: { pass: string; code: string; entry: string }): Material;
     /** Is called after a frame in which fragments were lost. Default: a warning on the console, once. */
     onLoss?(counters: Counters): void;
+    /**
+     * Measures every pass, for {@link FragmentBuffer.times}. Default: false. The device needs the feature
+     * `timestamp-query`. Without it, frames are the same, and `times()` returns the reason instead of times.
+     */
+    times?: boolean;
 }
 
 /** A shader of your own that calls the function of a pass, such as `store_fragment`. */
@@ -124,6 +131,19 @@ export interface Counters {
     counts: Record<string, number>;
 }
 
+/** How long the passes of a frame took on the device. */
+export interface PassTimes {
+    /**
+     * Milliseconds by the manifest's name of the pass, in the order in which passes ran first. Runs in loops and slices
+     * are summed. Finite and never negative. 0 is possible: browsers round timestamps, to about 100 µs.
+     */
+    passes: Record<string, number>;
+    /** The runs that `passes` does not contain: those after the first 2048 of a frame, or all with a `reason`. */
+    unmeasured: number;
+    /** Why nothing is measured: the device lacks the feature `timestamp-query`. Otherwise null. */
+    reason: string | null;
+}
+
 /** A fragment buffer on a device, for frames of one size. */
 export class FragmentBuffer {
     private constructor();
@@ -155,6 +175,11 @@ export class FragmentBuffer {
     encode(encoder: GPUCommandEncoder, call: Call): void;
     /** Reads the counters of the last submitted frame. */
     counters(): Promise<Counters>;
+    /**
+     * Reads the times of the passes of the last submitted frame, with {@link Options.times}. No frame waits for them.
+     * `passes` is empty before the first frame, and after one that failed.
+     */
+    times(): Promise<PassTimes>;
     /** Frees all memory. */
     destroy(): void;
 }

@@ -16,8 +16,9 @@ import { decide } from "./host.mjs";
 import { Memory, UniformSlots } from "./memory.mjs";
 import { compile, interleaved } from "./passes.mjs";
 import { planOf, SCHEMA, Values } from "./plan.mjs";
-import { Readback } from "./readback.mjs";
+import { MOST_QUERIES, Readback } from "./readback.mjs";
 import { check, checkedSize, requirements } from "./requirements.mjs";
+import { Timestamps } from "./times.mjs";
 import { UniformBlock } from "./uniforms.mjs";
 
 export { requirements, SCHEMA };
@@ -27,9 +28,6 @@ const LAG_FRAMES = 8;
 
 /** The greatest number of host steps whose words are copied for later frames. */
 const MOST_COPIES = 4;
-
-/** The greatest number of queries in a set. */
-const MOST_QUERIES = 4096;
 
 /** A fragment buffer on a device, for frames of one size. */
 export class FragmentBuffer {
@@ -71,12 +69,15 @@ export class FragmentBuffer {
         buffer.#uniforms = new UniformBlock(plan.uniform_blocks.find((block) => block.name === "uniforms"));
         buffer.#readback = new Readback(device);
         const counted = plan.steps.flatMap((step) => (step.until?.no_samples ? [step.until.no_samples] : []));
+        const measure = () => new Timestamps(device);
+        const timestamps = settings.times ? await buffer.#scoped("the queries of `times`", measure) : undefined;
         buffer.#state = {
             device, plan, values, passes, options: settings,
             memory: new Memory(device, plan),
             slots: new UniformSlots(device, plan.uniform_blocks),
             groups: new Map(),
             queries: { passes: [...new Set(counted)], count: 0 },
+            timestamps,
             flipped: plan.exchanges.map(() => false),
             apply: (decided) => {
                 buffer.#apply(decided);
@@ -165,6 +166,7 @@ export class FragmentBuffer {
             }
             this.#copies.push(...frame.later.map(({ step, staging }) => this.#readback.arriving(step, staging)));
             this.#unread = true;
+            this.#state.timestamps?.end();
             this.#reportLosses();
             return { loops: frame.loops };
         } finally {
@@ -189,6 +191,7 @@ export class FragmentBuffer {
         frame.encoder = encoder;
         frame.run().next();
         this.#unread = true;
+        this.#state.timestamps?.end();
     }
 
     /**
@@ -211,11 +214,23 @@ export class FragmentBuffer {
         return { lost, counts };
     }
 
+    /**
+     * Reads the times of the passes of the last submitted frame, with `times: true`. No frame waits for them.
+     * @returns {Promise<import("./fragbuf.d.ts").PassTimes>}
+     */
+    async times() {
+        this.#assertUsable();
+        const { timestamps } = this.#state;
+        if (!timestamps) throw new Error("the passes are not measured: create the fragment buffer with `times: true`");
+        return timestamps.read(this.#readback).catch((error) => this.#fail(error));
+    }
+
     /** Frees all memory. The device stays yours. */
     destroy() {
         this.#close("it was destroyed");
-        const { memory, slots, queries, counterStore, boxes } = this.#state;
-        [memory, slots.buffer, queries.set, counterStore.buffer, boxes, this.#readback].forEach((object) => object?.destroy());
+        const { memory, slots, queries, counterStore, boxes, timestamps } = this.#state;
+        const owned = [memory, slots.buffer, queries.set, counterStore.buffer, boxes, timestamps, this.#readback];
+        owned.forEach((object) => object?.destroy());
     }
 
     /** Checks the caller's arguments and prepares a frame. */
@@ -226,6 +241,7 @@ export class FragmentBuffer {
         for (const [name, texture] of Object.entries(call.textures ?? {})) memory.supply(name, texture, size);
         plan.resources.filter((resource) => resource.init === "external").forEach((resource) => memory.texture(resource.name));
         slots.begin();
+        this.#state.timestamps?.begin();
         if (objects) this.#setObjects(objects);
         const count = queries.passes.length + (objects?.length ?? 0);
         if (count > MOST_QUERIES) throw new Error(`${count} objects are more than ${MOST_QUERIES} queries: group several meshes into one object`);

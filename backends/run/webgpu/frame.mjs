@@ -152,7 +152,8 @@ export class Frame {
     }
 
     #dispatch(pass, step) {
-        const compute = this.encoder.beginComputePass({ label: step.pass });
+        const timestampWrites = this.state.timestamps?.writes(step.pass);
+        const compute = this.encoder.beginComputePass({ label: step.pass, timestampWrites });
         compute.setPipeline(pass.pipelines.get(undefined));
         this.#bind(compute, pass, step);
         const indirect = this.#indirect(step);
@@ -162,10 +163,11 @@ export class Frame {
     }
 
     #render(pass, step, visible) {
-        const { size, rows, boxes, queries } = this.state;
+        const { size, rows, boxes, queries, timestamps } = this.state;
         const queried = queries.passes.indexOf(step.pass);
         const isBoxes = step.objects === "boxes";
         const descriptor = this.#attachments(pass, step);
+        descriptor.timestampWrites = timestamps?.writes(step.pass);
         if (queried >= 0 || isBoxes) descriptor.occlusionQuerySet = queries.set;
         const render = this.encoder.beginRenderPass(descriptor);
         const mask = step.state.samples && this.#value(step.state.samples.mask);

@@ -4,7 +4,10 @@
  */
 
 /** The bytes of a query's result. */
-const QUERY_BYTES = 8;
+export const QUERY_BYTES = 8;
+
+/** The greatest number of queries in a set. */
+export const MOST_QUERIES = 4096;
 
 /** Reads words. One request of a frame is under way at a time. */
 export class Readback {
@@ -61,10 +64,11 @@ export class Readback {
         return copy;
     }
 
-    /** Reads the first bytes of a buffer, after everything that has been submitted. */
-    async first(buffer, size) {
-        if (size === 0) return [];
+    /** Reads the first bytes of a buffer, after everything that has been submitted and what `record` records. */
+    async first(buffer, size, record) {
+        if (size === 0) return new Uint32Array();
         const encoder = this.device.createCommandEncoder();
+        record?.(encoder);
         const staging = this.copy(encoder, [{ buffer, offset: 0, size }]);
         this.device.queue.submit([encoder.finish()]);
         await staging.mapAsync(GPUMapMode.READ);

@@ -3,6 +3,7 @@
  * @module
  */
 import { planOf, TARGET, Values } from "./plan.mjs";
+import { TIMESTAMP_FEATURE } from "./times.mjs";
 
 /** Sample counts of WebGPU. */
 const SAMPLE_COUNTS = [1, 4];
@@ -17,7 +18,7 @@ const SLICED = ["maxStorageBufferBindingSize", "maxBufferSize"];
  * @param {import("./fragbuf.d.ts").RequirementOptions} options
  * @returns {{ requiredLimits: Record<string, number>, requiredFeatures: GPUFeatureName[] }}
  */
-export function requirements(manifest, adapter, { size, symbols = {}, perPixel = 8, format } = {}) {
+export function requirements(manifest, adapter, { size, symbols = {}, perPixel = 8, format, times } = {}) {
     const plan = planOf(manifest);
     const values = new Values(plan, checkedSize(size), { perPixel, counts: false });
     for (const [name, value] of Object.entries(symbols)) values.assign(name, value);
@@ -26,7 +27,9 @@ export function requirements(manifest, adapter, { size, symbols = {}, perPixel =
     for (const { name, needed, usual } of limitsOf(plan, values)) {
         if (needed > usual) requiredLimits[name] = Math.min(needed, adapter.limits[name]);
     }
-    return { requiredLimits, requiredFeatures: featuresOf(plan, format) };
+    // A frame is drawn without times where an adapter has no timestamps.
+    const timed = times && adapter.features.has(TIMESTAMP_FEATURE) ? [TIMESTAMP_FEATURE] : [];
+    return { requiredLimits, requiredFeatures: [...featuresOf(plan, format), ...timed] };
 }
 
 /** Throws an error that names everything that `owner`, an adapter or a device, lacks for a plan. */

@@ -79,6 +79,7 @@ const HOST: &[Asset] = host![
     "plan.mjs",
     "readback.mjs",
     "requirements.mjs",
+    "times.mjs",
     "uniforms.mjs",
 ];
 

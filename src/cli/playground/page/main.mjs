@@ -275,9 +275,9 @@ function showError(message) {
 }
 
 /** Returns a frame's statistics in a line. */
-function frameLine({ device, target, ms, fragments, lost, triangles, k }) {
+function frameLine({ device, target, ms, frame_ms: whole, fragments, lost, triangles, k }) {
     // Preparing passes and triangles is no part of a frame.
-    const times = Number.isFinite(ms.frame) ? [ms.frame] : Object.values(ms);
+    const times = whole === null ? Object.values(ms) : [whole];
     const parts = [
         device,
         target,

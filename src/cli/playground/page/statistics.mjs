@@ -4,12 +4,14 @@
  * Input: what the picture reports: the JSON of `fragbuf render --json` for a frame of the server, times and counters for one of WebGPU.
  * Output: the same fields for both; what was not counted or timed is null. Nothing is shown here.
  */
+import { count } from "./dom.mjs";
 
 /**
  * @typedef {object} Frame
  * @property {string} device who drew it
  * @property {string | null} target
- * @property {Record<string, number>} ms by pass, or by part of the frame
+ * @property {Record<string, number>} ms by pass, or by part of the frame where no pass is timed
+ * @property {number | null} frame_ms of the whole frame: from drawing to the image, with what the page waits for
  * @property {number | null} bytes
  * @property {number | null} triangles
  * @property {number | null} k
@@ -29,7 +31,8 @@ export function frameOf(reported) {
     return {
         device: reported.mode === "webgpu" ? "WebGPU in this page" : (reported.device ?? ""),
         target,
-        ms: timesOf(reported.ms ?? reported.times ?? {}),
+        ms: timesOf(reported),
+        frame_ms: reported.times?.frame ?? null,
         bytes,
         triangles,
         k,
@@ -41,8 +44,11 @@ export function frameOf(reported) {
     };
 }
 
-function timesOf(ms) {
-    return Object.fromEntries(Object.entries(ms).filter(([, value]) => Number.isFinite(value)));
+/** Devices of the server time passes, WebGPU where the browser has timestamps. */
+function timesOf({ ms, times = {}, timed }) {
+    const passes = ms ?? timed?.passes ?? {};
+    const shown = Object.keys(passes).length > 0 ? passes : times;
+    return Object.fromEntries(Object.entries(shown).filter(([, value]) => Number.isFinite(value)));
 }
 
 /** A loop of WebGPU says whether its condition was met; null if nothing has waited for it. */
@@ -62,7 +68,10 @@ function fragmentsOf({ fragments, counts }, lost) {
     return { generated, culled, displaced, occluded, stored: generated - culled - displaced - (lost?.total ?? 0) };
 }
 
-function messagesOf({ messages, reason }) {
+function messagesOf({ messages, reason, timed }) {
     const texts = (messages ?? []).map((message) => (typeof message === "string" ? message : message?.message));
+    const rest = timed?.unmeasured ?? 0;
+    // Without timestamps the time of the frame is shown.
+    if (rest > 0 && !timed.reason) texts.push(`Of the passes of this frame, ${count(rest)} are not in its times.`);
     return [...texts, reason && `Drawn by the server: ${reason}`].filter(Boolean);
 }

@@ -64,13 +64,13 @@ export class WebGpuFrames {
                 objects: mesh.geometry.objects.map(({ box }) => box),
                 draw: (pass, { objects }) => draw(pass, mesh, objects),
             });
-            const image = await this.#read(request.size);
-            const { lost, counts } = await buffer.counters();
+            const read = [this.#read(request.size), buffer.counters(), buffer.times()];
+            const [image, { lost, counts }, timed] = await Promise.all(read);
             const times = { frame: performance.now() - drawing, prepare: drawing - begin };
             const causes = this.#buffer.losses.map((name) => [name, counts[name] ?? 0]);
             const losses = { total: lost, by_counter: Object.fromEntries(causes) };
             const bytes = buffer.allocatedBytes;
-            return { image, statistics: { mode: "webgpu", times, bytes, lost: losses, counts, ...report } };
+            return { image, statistics: { mode: "webgpu", times, timed, bytes, lost: losses, counts, ...report } };
         } catch (error) {
             this.#buffer.buffer?.destroy();
             this.#buffer = { key: null };
@@ -115,6 +115,7 @@ export class WebGpuFrames {
                 size,
                 format: FORMAT,
                 symbols,
+                times: true,
                 onLoss() {},
             });
             const losses = manifest.counters.filter((counter) => counter.is_loss).map(({ name }) => name);
