@@ -18,6 +18,10 @@ mod problem;
 mod server;
 mod start;
 
+pub(super) use assets::{HOST, asset};
+pub(super) use geometry::triangles;
+pub(super) use start::example;
+
 use std::net::{Ipv4Addr, TcpListener};
 use std::path::{Path, PathBuf};
 

@@ -16,6 +16,7 @@ import { decode, encode } from "./link.mjs";
 import { createPicture } from "./picture.mjs";
 import { createProblems } from "./problems.mjs";
 import { parseScene, sceneName } from "./scenes.mjs";
+import { ServerFrames } from "./server_frames.mjs";
 import { createStatus } from "./status.mjs";
 import { INITIAL, createStore } from "./state.mjs";
 import { frameOf } from "./statistics.mjs";
@@ -144,7 +145,7 @@ async function createPage(start, store) {
         },
     );
 
-    picture = await createPicture(byId("picture"), { api, report });
+    picture = await createPicture(byId("picture"), { report, fallback: new ServerFrames() });
     function report(result) {
         if (result.error) return showError(typeof result.error === "string" ? result.error : result.error.message);
         showError(null);
