@@ -48,6 +48,6 @@ mod tests {
     fn html_in_the_text_becomes_text() {
         let page = html("a <b>c</b>\n\n<script>x</script>\n\n| a |\n|---|\n| [b](b.md) |\n", &|_| "b.html".to_owned());
         assert!(page.contains("a &lt;b&gt;c&lt;/b&gt;") && page.contains("&lt;script&gt;"), "{page}");
-        assert!(page.contains("<a href=\"b.html\">b</a>") && page.contains("</table></div>"), "{page}");
+        assert!(page.contains("<a href=\"b.html\">b</a>") && page.contains("</table>\n</div>"), "{page}");
     }
 }

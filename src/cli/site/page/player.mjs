@@ -92,6 +92,7 @@ async function createPlayer(site, store) {
         describe(technique, variant);
         table.show(technique.unsupported ? [] : axes(technique, state));
         values.show({ keep: variant.keep ?? null, uniforms: [] });
+        for (const id of ["k", "cost", "size"]) byId(id).hidden = Boolean(technique.unsupported);
         passes.show(variant, technique.unsupported).then(() => status.recovered("player"), failed);
         status.recovered("start");
         draw();
@@ -100,6 +101,7 @@ async function createPlayer(site, store) {
     function draw(changes = {}) {
         const { scene, size, k } = store.value;
         const text = technique.unsupported ? technique.text : variantOf(technique, store.value).text;
+        if (byId("frame").textContent.trim() === "") byId("frame").textContent = "drawing …";
         byId("stage").style.setProperty("--aspect", String(size[0] / size[1]));
         picture.set({ text, scene, size, k, ...changes }).catch(failed);
     }
@@ -176,10 +178,11 @@ function line({ ms, bytes: size, lost, loops }, { k }) {
 /** Shows a note below the picture; an error is over it. */
 function note(message, isError) {
     const [overlay, below] = [byId("overlay"), byId("picture-note")];
+    const text = message.charAt(0).toUpperCase() + message.slice(1);
     overlay.hidden = !isError;
-    fill(overlay, isError ? inline(message) : "");
+    fill(overlay, isError ? inline(text) : "");
     below.hidden = isError || !message;
-    fill(below, isError ? "" : inline(message));
+    fill(below, isError ? "" : inline(text));
 }
 
 async function share(state) {
