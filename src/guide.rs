@@ -4,7 +4,8 @@
 //! 2. [`axes`]: every choice with its values, and [`language`]: the reference of the closure language.
 //! 3. [`generate`]: files for engines, build scripts, tiers.
 //! 4. [`manifest`]: how an engine in any language runs a frame.
-//! 5. [`run`]: images and statistics from the command line, [`playground`]: a page that shows both while you type.
+//! 5. [`run`]: images and statistics from the command line, [`playground`]: a page that shows both while you type, [`site`]: static pages
+//!    for a web host.
 //! 6. [`memory`]: k from a memory budget and a hit ratio, and [`peeling`]: every fragment in little memory.
 //! 7. [`figures`]: experiments of the papers, with the comparison of their trends.
 //! 8. [`embed`]: frames in your own engine, [`material`]: a shader of your own that stores fragments, [`browser`]: frames on a web page,
@@ -30,6 +31,8 @@ pub mod manifest {}
 pub mod run {}
 #[doc = include_str!("guide/playground.md")]
 pub mod playground {}
+#[doc = include_str!("guide/site.md")]
+pub mod site {}
 #[doc = include_str!("guide/memory.md")]
 pub mod memory {}
 #[doc = include_str!("guide/peeling.md")]

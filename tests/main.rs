@@ -52,6 +52,7 @@ mod predict;
 mod product;
 mod quads;
 mod render;
+mod site;
 mod snapshots;
 mod suggestions;
 mod tidy;

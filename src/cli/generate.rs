@@ -190,7 +190,7 @@ fn stem<'a>(description: &'a str, registry: &Registry) -> &'a str {
 }
 
 /// Returns the result of `work` for each item, in the order of the items. A single item needs no thread.
-fn on_all_cores<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+pub(crate) fn on_all_cores<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
     if items.len() < 2 {
         return items.iter().map(work).collect();
     }
@@ -225,7 +225,8 @@ fn prefix(text: &str) -> Result<String, String> {
     }
 }
 
-fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+/// Writes a file, and creates its folder.
+pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(|error| Failure::files(folder, &error))?;
     }

@@ -77,6 +77,11 @@ fn row(technique: &Technique, registry: &Registry) -> Result<Value, Failure> {
     let targets: Vec<&'static Target> = TARGETS.iter().collect();
     let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
     let generation = generate(&variant, &request, registry).map_err(|errors| input.failure(errors))?;
+    Ok(facts(technique, &generation))
+}
+
+/// Returns a technique that was generated for every target as JSON.
+pub(crate) fn facts(technique: &Technique, generation: &Generation) -> Value {
     let mut tiers = Map::new();
     for target in TARGETS {
         let planned = generation.plans.iter().find(|planned| planned.targets.iter().any(|t| t.name == target.name));
@@ -94,22 +99,22 @@ fn row(technique: &Technique, registry: &Registry) -> Result<Value, Failure> {
         .unwrap_or_default();
     let passes = first.map(|plan| plan.geometry_passes.clone());
     let passes = passes.map(|text| text.parse::<u32>().map_or(Value::from(text), Value::from));
-    Ok(json!({
+    json!({
         "key": technique.key,
         "title": technique.title,
         "paper": technique.paper,
         "summary": technique.summary,
         "axes": axes,
-        "words_per_pixel": over_plans(&generation, " or ", |plan| plan.words_per_pixel.clone()),
-        "bytes_per_pixel": over_plans(&generation, " or ", |plan| plan.bytes_per_pixel().to_string()),
+        "words_per_pixel": over_plans(generation, " or ", |plan| plan.words_per_pixel.clone()),
+        "bytes_per_pixel": over_plans(generation, " or ", |plan| plan.bytes_per_pixel().to_string()),
         "geometry_passes": passes,
-        "draws": over_plans(&generation, " or ", |plan| plan.draw_count().to_string()),
-        "passes": over_plans(&generation, " or ", |plan| plan.pass_count().to_string()),
-        "deterministic": over_plans(&generation, " or ", |plan| yes_or_no(plan.arrival() != Arrival::Race)),
-        "order_independent": over_plans(&generation, " or ", |plan| yes_or_no(plan.arrival() == Arrival::Any)),
-        "features": over_plans(&generation, " or ", features),
+        "draws": over_plans(generation, " or ", |plan| plan.draw_count().to_string()),
+        "passes": over_plans(generation, " or ", |plan| plan.pass_count().to_string()),
+        "deterministic": over_plans(generation, " or ", |plan| yes_or_no(plan.arrival() != Arrival::Race)),
+        "order_independent": over_plans(generation, " or ", |plan| yes_or_no(plan.arrival() == Arrival::Any)),
+        "features": over_plans(generation, " or ", features),
         "targets": tiers,
-    }))
+    })
 }
 
 /// Returns a property of the plans. Different values, of targets with different plans, are joined by `separator`.
@@ -264,7 +269,7 @@ fn range(targets: &Map<String, Value>) -> String {
 }
 
 /// Groups targets by tier: `T3 glsl spirv, T4 wgsl, no msl`. Unsupported targets are last.
-fn grouped(targets: &Map<String, Value>) -> String {
+pub(crate) fn grouped(targets: &Map<String, Value>) -> String {
     let short = |verdict: &Value| match verdict.as_str() {
         Some(tier) if TIERS.contains(&tier) => tier.to_owned(),
         _ => "no".to_owned(),

@@ -54,6 +54,8 @@ mod render;
 #[cfg(feature = "pictures")]
 mod rendering;
 mod show;
+#[cfg(feature = "playground")]
+mod site;
 #[cfg(feature = "pictures")]
 mod size;
 #[cfg(feature = "pictures")]
@@ -120,6 +122,9 @@ enum Command {
     /// Open a page to edit a description, see its picture, its cost and its text, and check it
     #[cfg(feature = "playground")]
     Playground(playground::Playground),
+    /// Write static pages: a gallery, a page per technique, and a player that draws pre-generated variants by WebGPU
+    #[cfg(feature = "playground")]
+    Site(site::Site),
     /// Answer an editor by the Language Server Protocol, on stdin and stdout
     Lsp(lsp::Lsp),
     /// Print the completions for a shell
@@ -157,6 +162,8 @@ pub(crate) fn run() -> ExitCode {
         Command::Figure(figure) => figure.run(),
         #[cfg(feature = "playground")]
         Command::Playground(playground) => playground.run(),
+        #[cfg(feature = "playground")]
+        Command::Site(site) => site.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

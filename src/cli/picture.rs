@@ -65,7 +65,7 @@ pub(crate) fn write(
 }
 
 /// Returns a PNG as bytes. The pixels are those of [`write`].
-#[cfg(feature = "figures")]
+#[cfg(any(feature = "figures", feature = "playground"))]
 pub(crate) fn bytes(
     size: (u32, u32),
     pixels: &mut dyn Iterator<Item = [f32; 4]>,

@@ -12,14 +12,16 @@ use super::animated_image::AnimatedImage;
 use super::animation::Animation;
 use super::assignment::{assignment, uniform};
 use super::attributes::{check_sources, model_attributes};
+#[cfg(feature = "playground")]
+use super::device::DeviceRequest;
 use super::input::Input;
 use super::output::{self, Failure};
 use super::picture;
 use super::progress::Progress;
-use super::rendering::{RenderRequest, render, select};
+use super::rendering::{DeviceSelection, RenderRequest, RenderResult, render, select};
 use super::statistics::statistics;
 use super::uniforms;
-use super::view::{View, scenes};
+use super::view::{SceneView, View, scenes};
 use super::watch::watch;
 
 #[derive(clap::Args)]
@@ -44,6 +46,9 @@ pub(crate) struct Render {
     watch: bool,
     #[command(flatten)]
     animation: Animation,
+    /// The text of an example of this program, which is not read from its file.
+    #[arg(skip)]
+    text: Option<&'static str>,
 }
 
 impl Render {
@@ -106,12 +111,39 @@ impl Render {
         layer.into_iter().flatten().chain(self.set.iter().cloned()).collect()
     }
 
+    /// Reads the description.
+    fn input(&self, registry: &Registry) -> Result<Input, Failure> {
+        match self.text {
+            Some(text) => Ok(Input::text(&self.description, text)),
+            None => Input::read(&self.description, registry),
+        }
+    }
+
     /// Renders the next frame of a sequence, adds the files that it reads to `files`, and returns the statistics of the frame.
     fn frame(&self, view: &View, sequence: &mut Sequence, files: &mut Vec<PathBuf>) -> Result<Value, Failure> {
         let progress = Progress::new();
+        let Drawn { result, selection, scene } = self.draw(view, sequence.lagged.as_ref(), files, &progress)?;
+        progress.set_message(format!("writing {}", view.out.display()));
+        match &mut sequence.image {
+            Some(image) => image.append(&mut shown(&result, view))?,
+            None => picture::write(&view.out, view.size, &mut shown(&result, view), view.linear)?,
+        }
+        let statistics = statistics(&self.description, &result, &selection, &scene);
+        sequence.lagged = result.stats.lagged;
+        Ok(statistics)
+    }
+
+    /// Draws a frame, and adds the files that it reads to `files`.
+    fn draw(
+        &self,
+        view: &View,
+        lagged: Option<&LaggedValues>,
+        files: &mut Vec<PathBuf>,
+        progress: &Progress,
+    ) -> Result<Drawn, Failure> {
         progress.set_message(format!("loading {}", view.scene));
         let registry = Registry::builtin();
-        let mut input = Input::read(&self.description, &registry)?;
+        let mut input = self.input(&registry)?;
         let set = self.changes(&registry);
         let variant = input.variant(&set, &registry);
         files.extend_from_slice(input.files());
@@ -132,22 +164,47 @@ impl Render {
             count_all: view.json || self.animation.is_given(),
             opaque: opaque.as_ref(),
             held: 0,
-            lagged: sequence.lagged.as_ref(),
+            lagged,
             words: &[],
         };
         let mut selection = select(view, &scene, &mut [(&request, &mut input)])?;
-        let result = render(&request, &mut input, (view, &mut selection), &scene, &progress)?;
-        progress.set_message(format!("writing {}", view.out.display()));
-        let shown = |pixel: &[f32; 4]| picture::displayed(*pixel, view.background, view.linear);
-        let pixels = &mut result.stats.pixels.iter().map(shown);
-        match &mut sequence.image {
-            Some(image) => image.append(pixels)?,
-            None => picture::write(&view.out, view.size, pixels, view.linear)?,
-        }
-        let statistics = statistics(&self.description, &result, &selection, &scene);
-        sequence.lagged = result.stats.lagged;
-        Ok(statistics)
+        let result = render(&request, &mut input, (view, &mut selection), &scene, progress)?;
+        Ok(Drawn { result, selection, scene })
     }
+}
+
+#[cfg(feature = "playground")]
+impl Render {
+    /// Returns the command with an example of this program as its description.
+    pub(crate) fn with_text(self, text: &'static str) -> Self {
+        Render { text: Some(text), ..self }
+    }
+
+    /// Returns the size of the image.
+    pub(crate) fn size(&self) -> (u32, u32) {
+        self.view.size
+    }
+
+    /// Returns the image as a PNG instead of writing it. The CPU device draws it.
+    pub(crate) fn png(&self) -> Result<Vec<u8>, Failure> {
+        let mut view = self.view.clone();
+        view.device = DeviceRequest::Cpu;
+        let Drawn { result, .. } = self.draw(&view, None, &mut Vec::new(), &Progress::new())?;
+        picture::bytes(view.size, &mut shown(&result, &view), view.linear)
+    }
+}
+
+/// A frame, and what it was drawn with.
+struct Drawn {
+    result: RenderResult,
+    selection: DeviceSelection,
+    scene: SceneView,
+}
+
+/// Returns the colours of an image as a PNG has them.
+fn shown<'a>(result: &'a RenderResult, view: &'a View) -> impl Iterator<Item = [f32; 4]> + 'a {
+    let shown = |pixel: &[f32; 4]| picture::displayed(*pixel, view.background, view.linear);
+    result.stats.pixels.iter().map(shown)
 }
 
 /// What the frames of an animation pass on.

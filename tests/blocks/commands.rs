@@ -11,8 +11,12 @@ const SMALLER: &[(&str, &str)] =
     &[("builtin:hairball", "builtin:hairball,strands=20"), ("builtin:needles", "builtin:needles,n=20")];
 
 /// Options of every command of a name, with values that take less time.
-const OPTIONS: &[(&str, &str, &str)] =
-    &[("render", "--size", "24x18"), ("compare", "--size", "24x18"), ("check", "--fragments", "2")];
+const OPTIONS: &[(&str, &str, &str)] = &[
+    ("render", "--size", "24x18"),
+    ("compare", "--size", "24x18"),
+    ("check", "--fragments", "2"),
+    ("site", "--technique", "kb_mdt64"),
+];
 
 /// A model for commands that name one.
 const MODEL: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0.5\nf 1 2 3\n";

@@ -1,18 +1,24 @@
 /**
- * Runs the scenarios against a server: `node drive.mjs ADDRESS [NAME…]`.
+ * Runs the scenarios against a server: `node drive.mjs ADDRESS|FOLDER [NAME…]`.
  *
- * Input: the address that `fragbuf playground` prints. Output: a line per scenario; the exit status is 1 if one failed. Every scenario has a
- * page of its own.
+ * Input: the address that `fragbuf playground` prints, or the folder that `fragbuf site` wrote, which is then served. Output: a line per
+ * scenario; the exit status is 1 if one failed. Every scenario has a page of its own.
  */
 import * as picture from "./picture.mjs";
 import { WEBGPU, close, launch, open } from "./page.mjs";
+import * as player from "./player.mjs";
+import * as site from "./site.mjs";
+import { serve } from "./static_server.mjs";
 import * as typing from "./typing.mjs";
 import * as webgpu from "./webgpu.mjs";
 import * as whole from "./whole.mjs";
 
 const [given, ...names] = process.argv.slice(2);
-const address = given.endsWith("/") ? given : `${given}/`;
-const all = { ...typing, ...picture, ...whole, ...webgpu };
+const served = given.startsWith("http:") ? null : await serve(given);
+const address = served?.address ?? (given.endsWith("/") ? given : `${given}/`);
+const all = served ? { ...site, ...player } : { ...typing, ...picture, ...whole, ...webgpu };
+/** The scenarios of a site begin at the player. */
+const first = served ? { hash: "play/index.html" } : {};
 const unknown = names.filter((name) => !(name in all));
 if (unknown.length > 0) throw new Error(`no scenario ${unknown.join(", ")}`);
 
@@ -27,7 +33,7 @@ const EXPECTED = {
 const browsers = new Map();
 
 async function browserFor(name) {
-    const key = name in webgpu;
+    const key = name in webgpu || name in player;
     if (!browsers.has(key)) browsers.set(key, await launch(key ? WEBGPU : []));
     return browsers.get(key);
 }
@@ -39,7 +45,7 @@ for (const [name, scenario] of Object.entries(all)) {
     let page = null;
     try {
         const browser = await browserFor(name);
-        page = await open(browser, address);
+        page = await open(browser, address, first);
         await scenario(page, { browser, address });
         await close(page, { expected: EXPECTED[name] });
         console.log(`ok      ${name} (${Math.round(performance.now() - begin)} ms)`);
@@ -55,4 +61,5 @@ for (const [name, scenario] of Object.entries(all)) {
     }
 }
 for (const browser of browsers.values()) await browser.close();
+served?.close();
 process.exit(failures === 0 ? 0 : 1);

@@ -1,7 +1,7 @@
 /**
  * What a person sees and does at the page, for the scenarios.
  *
- * Input: the address of a server. Output: pages in Chromium, and what they show. Everything is found by what a person perceives: roles,
+ * Input: the address of a server, of the playground or of a site. Output: pages in Chromium, and what they show. Everything is found by what a person perceives: roles,
  * names, text; or by the places of CodeMirror's marks.
  */
 import assert from "node:assert/strict";
@@ -33,7 +33,7 @@ export async function launch(flags = []) {
 
 /** Opens the page, and waits until the first description is analysed and drawn. Errors of the page fail the scenario at its end. */
 export async function open(browser, address, options = {}) {
-    const { hash = "", width = 1400, height = 900, dark = false, drawn: waits = true } = options;
+    const { hash = "", width = 1400, height = 900, dark = false, drawn: waits = true, ready = ".cm-content" } = options;
     const context = await browser.newContext({
         viewport: { width, height },
         colorScheme: dark ? "dark" : "light",
@@ -49,8 +49,11 @@ export async function open(browser, address, options = {}) {
         if (!request.url().startsWith(address) && !/^(blob|data):/.test(request.url()))
             page.problems.push(`a request to ${request.url()}`);
     });
+    page.on("response", (response) => {
+        if (response.status() >= 400) page.problems.push(`status ${response.status()} of ${response.url()}`);
+    });
     await page.goto(address + hash);
-    await page.locator(".cm-content").first().waitFor();
+    await page.locator(ready).first().waitFor();
     if (waits) await drawn(page);
     return page;
 }
@@ -116,4 +119,49 @@ export async function tabTo(page, name, { key = "Tab", most = 80 } = {}) {
         passed.push(focused.trim().slice(0, 30));
     }
     assert.fail(`Tab never reaches ${name}; it passes ${passed.join(" | ")}`);
+}
+
+/** Runs in the page. Returns visible texts whose contrast with their ground is less than 4.5. */
+export function faint() {
+    const canvas = new OffscreenCanvas(1, 1).getContext("2d", { willReadFrequently: true });
+    const rgba = (color) => {
+        canvas.clearRect(0, 0, 1, 1);
+        canvas.fillStyle = color;
+        canvas.fillRect(0, 0, 1, 1);
+        const [r, g, b, a] = canvas.getImageData(0, 0, 1, 1).data;
+        return [r, g, b, a / 255];
+    };
+    const over = (top, bottom) => top.slice(0, 3).map((value, index) => value * top[3] + bottom[index] * (1 - top[3]));
+    const ground = (element) => {
+        if (!element) return rgba(getComputedStyle(document.documentElement).backgroundColor).slice(0, 3);
+        const color = rgba(getComputedStyle(element).backgroundColor);
+        return color[3] === 1 ? color.slice(0, 3) : over(color, ground(element.parentElement));
+    };
+    const luminance = (color) => {
+        const [r, g, b] = color.map((value) =>
+            value / 255 <= 0.04045 ? value / 255 / 12.92 : ((value / 255 + 0.055) / 1.055) ** 2.4,
+        );
+        return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    };
+    const found = [];
+    const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+    while (walker.nextNode()) {
+        const element = walker.currentNode.parentElement;
+        if (!walker.currentNode.textContent.trim() || !element.checkVisibility({ visibilityProperty: true })) continue;
+        // What cannot be used, and what is about an earlier text, is exempt.
+        if (
+            element.closest(
+                ":disabled, .outdated, option, svg, noscript, .skip, .unseen, [aria-hidden=true], body[data-text=invalid] .panel",
+            )
+        )
+            continue;
+        const back = ground(element);
+        const [light, dark] = [luminance(over(rgba(getComputedStyle(element).color), back)), luminance(back)].sort(
+            (a, b) => b - a,
+        );
+        const contrast = (light + 0.05) / (dark + 0.05);
+        if (contrast < 4.5)
+            found.push(`${contrast.toFixed(2)}: ${element.className} ${walker.currentNode.textContent.slice(0, 40)}`);
+    }
+    return found;
 }

@@ -3,7 +3,7 @@
  */
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
-import { PATIENCE, close, drawn, editor, heading, open, pixels, tabTo, text, write } from "./page.mjs";
+import { PATIENCE, close, drawn, editor, faint, heading, open, pixels, tabTo, text, write } from "./page.mjs";
 
 /** Everything by keyboard alone: no pointer is used here. */
 export async function everything_works_by_keyboard_alone(page) {
@@ -144,51 +144,6 @@ export async function light_and_dark_have_contrast(page) {
     await page.locator(".cm-content").first().waitFor();
     await page.emulateMedia({ colorScheme: "light" });
     assert.equal(await page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor), grounds[1]);
-}
-
-/** Runs in the page. Returns visible texts whose contrast with their ground is less than 4.5. */
-function faint() {
-    const canvas = new OffscreenCanvas(1, 1).getContext("2d", { willReadFrequently: true });
-    const rgba = (color) => {
-        canvas.clearRect(0, 0, 1, 1);
-        canvas.fillStyle = color;
-        canvas.fillRect(0, 0, 1, 1);
-        const [r, g, b, a] = canvas.getImageData(0, 0, 1, 1).data;
-        return [r, g, b, a / 255];
-    };
-    const over = (top, bottom) => top.slice(0, 3).map((value, index) => value * top[3] + bottom[index] * (1 - top[3]));
-    const ground = (element) => {
-        if (!element) return rgba(getComputedStyle(document.documentElement).backgroundColor).slice(0, 3);
-        const color = rgba(getComputedStyle(element).backgroundColor);
-        return color[3] === 1 ? color.slice(0, 3) : over(color, ground(element.parentElement));
-    };
-    const luminance = (color) => {
-        const [r, g, b] = color.map((value) =>
-            value / 255 <= 0.04045 ? value / 255 / 12.92 : ((value / 255 + 0.055) / 1.055) ** 2.4,
-        );
-        return 0.2126 * r + 0.7152 * g + 0.0722 * b;
-    };
-    const found = [];
-    const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
-    while (walker.nextNode()) {
-        const element = walker.currentNode.parentElement;
-        if (!walker.currentNode.textContent.trim() || !element.checkVisibility({ visibilityProperty: true })) continue;
-        // What cannot be used, and what is about an earlier text, is exempt.
-        if (
-            element.closest(
-                ":disabled, .outdated, option, svg, noscript, .skip, .unseen, [aria-hidden=true], body[data-text=invalid] .panel",
-            )
-        )
-            continue;
-        const back = ground(element);
-        const [light, dark] = [luminance(over(rgba(getComputedStyle(element).color), back)), luminance(back)].sort(
-            (a, b) => b - a,
-        );
-        const contrast = (light + 0.05) / (dark + 0.05);
-        if (contrast < 4.5)
-            found.push(`${contrast.toFixed(2)}: ${element.className} ${walker.currentNode.textContent.slice(0, 40)}`);
-    }
-    return found;
 }
 
 /** A link holds description, scene, camera, k and uniforms. */

@@ -1,10 +1,10 @@
 //! The files of the page, by their paths.
 
 /// A file of the page.
-pub(super) struct Asset {
-    pub(super) path: &'static str,
+pub(in crate::cli) struct Asset {
+    pub(in crate::cli) path: &'static str,
     pub(super) kind: &'static str,
-    pub(super) bytes: &'static [u8],
+    pub(in crate::cli) bytes: &'static [u8],
 }
 
 const HTML: &str = "text/html; charset=utf-8";
@@ -35,6 +35,7 @@ const PAGE: &[Asset] = page![
     SCRIPT "camera.mjs",
     SCRIPT "check.mjs",
     SCRIPT "code_style.mjs",
+    SCRIPT "code_view.mjs",
     SCRIPT "compare.mjs",
     SCRIPT "controls.mjs",
     SCRIPT "costs.mjs",
@@ -66,7 +67,8 @@ const PAGE: &[Asset] = page![
     SCRIPT "wrapping.mjs",
 ];
 
-const HOST: &[Asset] = host![
+/// The WebGPU host, in the folder `webgpu` of the page.
+pub(in crate::cli) const HOST: &[Asset] = host![
     "arguments.mjs",
     "boxes.mjs",
     "errors.mjs",
@@ -82,6 +84,11 @@ const HOST: &[Asset] = host![
     "times.mjs",
     "uniforms.mjs",
 ];
+
+/// Returns the bytes of a file by its path in the page.
+pub(in crate::cli) fn asset(path: &str) -> Option<&'static [u8]> {
+    PAGE.iter().chain(HOST).find(|asset| asset.path == path).map(|asset| asset.bytes)
+}
 
 /// Returns the file of a path of the server; `/` is the page.
 pub(super) fn find(path: &str) -> Option<&'static Asset> {

@@ -22,6 +22,12 @@ pub(super) struct GeometryRequest {
     scene: String,
 }
 
+/// Returns the triangles of a scene for a description without files, as [`GeometryRequest`] answers.
+pub(in crate::cli) fn triangles(text: &str, scene: &str) -> Result<Vec<u8>, String> {
+    let request = GeometryRequest { text: text.to_owned(), scene: scene.to_owned() };
+    request.answer(&Folder(None)).map_err(|problem| problem.message)
+}
+
 impl GeometryRequest {
     /// Returns the length of a header in four bytes, the header as JSON, zeros up to a multiple of four bytes, then words: vertices,
     /// normals, indices.

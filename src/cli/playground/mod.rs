@@ -20,6 +20,10 @@ mod scene;
 mod server;
 mod start;
 
+pub(super) use assets::{HOST, asset};
+pub(super) use geometry::triangles;
+pub(super) use start::example;
+
 use std::net::{Ipv4Addr, TcpListener};
 use std::path::{Path, PathBuf};
 

@@ -13,6 +13,11 @@ use super::problem::Problem;
 /// The time that drivers may take to list their devices.
 const DEVICES: Duration = Duration::from_secs(20);
 
+/// Returns the text of an example by the name of its file, without the extension.
+pub(in crate::cli) fn example(name: &str) -> Option<&'static str> {
+    EXAMPLES.iter().find(|(key, _)| *key == name).map(|(_, text)| *text)
+}
+
 /// Descriptions of the folder `examples` that need no files.
 const EXAMPLES: &[(&str, &str)] = &[
     ("glass", include_str!("../../../examples/glass.fragbuf")),

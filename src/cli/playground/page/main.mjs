@@ -17,6 +17,7 @@ import { createModels, modelRow } from "./models.mjs";
 import { createPicture } from "./picture.mjs";
 import { createProblems } from "./problems.mjs";
 import { parseScene, sceneName } from "./scenes.mjs";
+import { ServerFrames } from "./server_frames.mjs";
 import { createStatus } from "./status.mjs";
 import { INITIAL, createStore } from "./state.mjs";
 import { frameOf } from "./statistics.mjs";
@@ -160,7 +161,7 @@ async function createPage(start, store) {
         },
     );
 
-    picture = await createPicture(byId("picture"), { api, report });
+    picture = await createPicture(byId("picture"), { report, fallback: new ServerFrames() });
     function report(result) {
         if (result.error) return showError(typeof result.error === "string" ? result.error : result.error.message);
         showError(null);

@@ -1,12 +1,11 @@
 /**
- * The picture of a description: drawn by WebGPU in the page, or by a device of the server where the browser has no WebGPU or the
- * description needs more than it offers. The latest request wins; a frame is never drawn twice at the same time.
+ * The picture of a description: drawn by WebGPU in the page, or by a fallback, such as a device of the server, where the browser has no
+ * WebGPU or the description needs more than it offers. The latest request wins; a frame is never drawn twice at the same time.
  */
 import { AUTO } from "./camera.mjs";
 import { WebGpuFrames } from "./webgpu_frames.mjs";
-import { ServerFrames } from "./server_frames.mjs";
 
-/** The parts of a request. The device `auto` is WebGPU in the page, or what the server selects. */
+/** The parts of a request. The device `auto` is WebGPU in the page, or what the fallback selects. */
 const DEFAULTS = { text: "", scene: "marbles", uniforms: {}, k: null, size: [512, 512], camera: AUTO, device: "auto" };
 
 /** The parts that change while something is dragged. */
@@ -15,11 +14,13 @@ const MOVING = ["camera", "uniforms", "k"];
 /**
  * Shows pictures on a canvas.
  * @param {HTMLCanvasElement} canvas
- * @param {{ report(statistics: object): void, useServer?: boolean }} options `report` gets the statistics of each frame, or `{ error }`.
+ * @param {object} options
+ * @param {(statistics: object) => void} options.report gets the statistics of each frame, or `{ error }`
+ * @param {{ draw(request: object, signal: AbortSignal): Promise<{ image: any, statistics: object }> }} options.fallback
  */
-export async function createPicture(canvas, { report, useServer = false }) {
-    const picture = new Picture(canvas, report);
-    await picture.open(useServer);
+export async function createPicture(canvas, { report, fallback }) {
+    const picture = new Picture(canvas, report, fallback);
+    await picture.open();
     return picture;
 }
 
@@ -28,26 +29,22 @@ class Picture {
     #report;
     #request = { ...DEFAULTS };
     #webgpu = null;
-    #server = new ServerFrames();
+    #fallback;
     #isWanted = false;
     #drawing = null;
     /** Cancels the frame that is drawn. */
     #running = null;
     #onCamera = () => {};
 
-    constructor(canvas, report) {
+    constructor(canvas, report, fallback) {
         this.#canvas = canvas;
         this.#report = report;
+        this.#fallback = fallback;
         listen(canvas, this);
     }
 
-    async open(useServer) {
-        this.#webgpu = useServer ? null : await WebGpuFrames.open();
-    }
-
-    /** Who draws: `webgpu` or `server`. */
-    get mode() {
-        return this.#webgpu ? "webgpu" : "server";
+    async open() {
+        this.#webgpu = await WebGpuFrames.open();
     }
 
     get camera() {
@@ -100,14 +97,14 @@ class Picture {
         }
     }
 
-    /** Draws a request by WebGPU, or by the server where another device is chosen, or if WebGPU says why it cannot. */
+    /** Draws a request by WebGPU, or by the fallback where another device is chosen, or if WebGPU says why it cannot. */
     async #draw(request, signal) {
-        if (!this.#webgpu || request.device !== "auto") return this.#server.draw(request, signal);
+        if (!this.#webgpu || request.device !== "auto") return this.#fallback.draw(request, signal);
         try {
             return await this.#webgpu.draw(request);
         } catch (error) {
             if (error.isLost) this.#webgpu = await WebGpuFrames.open();
-            const { image, statistics } = await this.#server.draw(request, signal);
+            const { image, statistics } = await this.#fallback.draw(request, signal);
             return { image, statistics: { ...statistics, reason: error.message } };
         }
     }

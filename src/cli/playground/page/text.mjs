@@ -4,20 +4,9 @@
  * Input: a description, its targets. Output: the files that the server generates, copied or downloaded on demand. Text is generated only
  * while the panel is shown.
  */
-import {
-    EditorState,
-    EditorView,
-    GutterMarker,
-    gutter,
-    highlightSelectionMatches,
-    keymap,
-    lineNumbers,
-    searchKeymap,
-} from "./vendor/codemirror.mjs";
 import { latest } from "./api.mjs";
-import { codeStyle } from "./code_style.mjs";
-import { button, bytes, element, fill } from "./dom.mjs";
-import { shaderLanguage } from "./language.mjs";
+import { codeView } from "./code_view.mjs";
+import { bytes, element, fill } from "./dom.mjs";
 import { createTabs } from "./tabs.mjs";
 
 /**
@@ -137,60 +126,4 @@ export function save(blob, name) {
     const link = element("a", { href: address, download: name });
     link.click();
     setTimeout(() => URL.revokeObjectURL(address), 60_000);
-}
-
-class Origin extends GutterMarker {
-    constructor(line, go) {
-        super();
-        this.line = line;
-        this.go = go;
-    }
-    eq(other) {
-        return other.line === this.line;
-    }
-    toDOM() {
-        // Not a tab stop: Enter on the line does the same, and a text may have hundreds of them.
-        const title = `From line ${this.line} of the description: go there`;
-        return button(`${this.line}`, () => this.go(this.line), { title, tabIndex: -1, className: "origin" });
-    }
-}
-
-/** Returns in words where a line of a file comes from; counted from 0. */
-function origin({ lines = [], templates = [] }, index) {
-    if (lines[index]) return `from line ${lines[index]} of the description`;
-    return templates[index] ? `from ${templates[index]}` : "";
-}
-
-function codeView(parent, file, go, at) {
-    const lines = file.lines ?? [];
-    const origins = gutter({
-        class: "cm-origin",
-        lineMarker(view, block) {
-            const line = lines[view.state.doc.lineAt(block.from).number - 1];
-            return line ? new Origin(line, go) : null;
-        },
-    });
-    const index = (state) => state.doc.lineAt(state.selection.main.head).number - 1;
-    const enter = (view) => {
-        const line = lines[index(view.state)];
-        if (line) go(line);
-        return Boolean(line);
-    };
-    return new EditorView({
-        parent,
-        state: EditorState.create({
-            doc: file.text,
-            extensions: [
-                ...(lines.some(Boolean) ? [origins] : []),
-                lineNumbers(),
-                EditorState.readOnly.of(true),
-                highlightSelectionMatches(),
-                keymap.of([{ key: "Enter", run: enter }, ...searchKeymap]),
-                EditorView.contentAttributes.of({ "aria-label": `${file.path}, read-only`, "aria-readonly": "true" }),
-                EditorView.updateListener.of((update) => update.selectionSet && at(origin(file, index(update.state)))),
-                shaderLanguage,
-                codeStyle,
-            ],
-        }),
-    });
 }

@@ -1,5 +1,5 @@
 /**
- * Frames by WebGPU in the page. It follows the manifest of the portable WGSL passes, which the server generates.
+ * Frames by WebGPU in the page. It follows the manifest of the portable WGSL passes, which `api.mjs` gives.
  *
  * Passes are generated again when the description changes, triangles when it or the scene does. The image is read back, because a page
  * that presents no canvas also works where the browser draws in software.
