@@ -1,7 +1,9 @@
 //! `fragbuf list`: lists techniques and axes, computed from the registry rows.
 
 use fragbuf::analysis;
-use fragbuf::{Arrival, Form, Generation, Plan, Registry, Request, TARGETS, TIERS, Target, generate, tier};
+use fragbuf::{
+    Arrival, Form, Generation, Plan, Registry, Request, TARGETS, TIERS, Target, generate, tier, tier_meaning,
+};
 use fragbuf_templates::vocabulary::{Row, Technique};
 use serde_json::{Map, Value, json};
 
@@ -192,7 +194,7 @@ fn table<const COLUMNS: usize>(headings: [&str; COLUMNS], rows: &[[String; COLUM
 /// Returns the table as Markdown. The key of a technique is a link to its page in the same folder.
 fn markdown(rows: &[[String; HEADINGS.len()]]) -> String {
     let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-    let mut text = String::from(PAGE_HEADER);
+    let mut text = PAGE_HEADER.replace("TIERS", &tiers());
     text.push_str(&line(HEADINGS.map(str::to_owned).to_vec()));
     text.push_str(&line(vec!["---".to_owned(); HEADINGS.len()]).replace(' ', ""));
     for row in rows {
@@ -202,7 +204,12 @@ fn markdown(rows: &[[String; HEADINGS.len()]]) -> String {
     text
 }
 
-/// The text before the table of [`markdown`].
+/// Returns the tiers with their meanings, in Markdown.
+pub(crate) fn tiers() -> String {
+    TIERS.map(|tier| format!("**{tier}** {}", tier_meaning(tier))).join("; ")
+}
+
+/// The text before the table of [`markdown`]; `TIERS` is what [`tiers`] returns.
 const PAGE_HEADER: &str = "\
 # Techniques
 
@@ -212,9 +219,7 @@ Computed from the registry rows by `fragbuf list --markdown`. [table_1.md](table
 * *geometry*: how often the scene is drawn. *draws* and *passes* of a frame include full-screen triangles and compute passes.
 * *deterministic*: races do not change the image. *order-independent*: the image does not depend on the order in which fragments
   arrive. Both hold only if the counters report that no fragment overflowed or timed out.
-* *tiers*: the mechanism that makes the technique sound under concurrency, for each target: **T1** single-object atomics, sound in portable
-  WGSL; **T2** interlock; **T3** a lock with fences; **T4** a lock in plain WGSL, which works on many GPUs and is guaranteed by none;
-  **T5** racy by design.
+* *tiers*: the mechanism that makes the technique sound under concurrency, for each target. TIERS.
 * *features*: what the target, and then the device, must provide.
 
 ";

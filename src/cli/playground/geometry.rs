@@ -25,7 +25,7 @@ pub(super) struct GeometryRequest {
 /// Returns the triangles of a scene for a description without files, as [`GeometryRequest`] answers.
 pub(in crate::cli) fn triangles(text: &str, scene: &str) -> Result<Vec<u8>, String> {
     let request = GeometryRequest { text: text.to_owned(), scene: scene.to_owned() };
-    request.answer(&Folder(None)).map_err(|problem| problem.message)
+    request.answer(&Folder(None), &Models::default()).map_err(|problem| problem.message)
 }
 
 impl GeometryRequest {

@@ -18,12 +18,11 @@ const ABOUT: &str = "A *fragment buffer* stores several fragments per pixel; ord
                      passes in WGSL, GLSL, SPIR-V, HLSL and MSL, with a manifest that an engine can follow. It also draws with them, \
                      compares them, and checks them in every interleaving of the fragments of a pixel.";
 
-/// What the table of techniques means.
+/// What the table of techniques means; `TIERS` is what [`list::tiers`] returns.
 const TABLE: &str = "# Techniques\n\n\
     A technique is a point on the axes of fragbuf, named as in its paper. *f* is the number of fragments of a pixel, *n* the greatest *f*, \
-    *k* the number of fragments kept. *Tiers* name the mechanism that makes a technique sound under concurrency: **T1** single-object \
-    atomics, **T2** interlock, **T3** a lock with fences, **T4** a lock in plain WGSL, which works on many GPUs and is guaranteed by none, \
-    **T5** racy by design. *Order-independent*: the image does not depend on the order in which fragments arrive.\n\n\
+    *k* the number of fragments kept. *Tiers* name the mechanism that makes a technique sound under concurrency. TIERS. \
+    *Order-independent*: the image does not depend on the order in which fragments arrive.\n\n\
     | technique | what a pixel keeps | bytes per pixel | draws | order-independent | tiers |\n|---|---|---|---|---|---|\n";
 
 /// Adds the pages.
@@ -37,7 +36,10 @@ pub(super) fn add(
     let page = Page { title: "fragbuf", root: "", current: "Gallery", content: &gallery };
     files.add("index.html", page.html());
     let table: String = entries.iter().map(row).collect();
-    let content = format!("<article class=\"text wide\">\n{}</article>\n", text(&format!("{TABLE}{table}")));
+    let content = format!(
+        "<article class=\"text wide\">\n{}</article>\n",
+        text(&format!("{}{table}", TABLE.replace("TIERS", &list::tiers())))
+    );
     let page = Page { title: "Techniques · fragbuf", root: "../", current: "Techniques", content: &content };
     files.add("techniques/index.html", page.html());
     for (number, entry) in entries.iter().enumerate() {
