@@ -251,7 +251,12 @@ export async function a_generated_line_leads_to_its_origin(page) {
         await page.waitForTimeout(30);
     }
     assert.equal(await origin.textContent(), "2");
-    await origin.click();
-    assert.equal(await page.locator("#editor .cm-activeLine").textContent(), "    keep 4 least |f| f.depth - f.color.w;");
+    const active = page.locator("#editor .cm-activeLine", { hasText: /^ {4}keep 4 least \|f\| f\.depth - f\.color\.w;$/ });
+    // A view that is shown again between press and release gets no click.
+    for (let press = 0; press < 20 && (await active.count()) === 0; press += 1) {
+        await origin.click();
+        await page.waitForTimeout(100);
+    }
+    await active.waitFor();
 }
 

@@ -31,7 +31,15 @@ export function codeView(parent, file, go, at) {
         class: "cm-origin",
         lineMarker(view, block) {
             const line = lines[view.state.doc.lineAt(block.from).number - 1];
-            return line ? new Origin(line, go) : null;
+            return line ? new Origin(line) : null;
+        },
+        // Of the gutter: a marker may be drawn again between press and release, and would get no click.
+        domEventHandlers: {
+            click(view, block) {
+                const line = lines[view.state.doc.lineAt(block.from).number - 1];
+                if (line) go(line);
+                return Boolean(line);
+            },
         },
     });
     const index = (state) => state.doc.lineAt(state.selection.main.head).number - 1;
@@ -60,10 +68,9 @@ export function codeView(parent, file, go, at) {
 }
 
 class Origin extends GutterMarker {
-    constructor(line, go) {
+    constructor(line) {
         super();
         this.line = line;
-        this.go = go;
     }
     eq(other) {
         return other.line === this.line;
@@ -71,7 +78,7 @@ class Origin extends GutterMarker {
     toDOM() {
         // Not a tab stop: Enter on the line does the same, and a text may have hundreds of them.
         const title = `From line ${this.line} of the description: go there`;
-        return button(`${this.line}`, () => this.go(this.line), { title, tabIndex: -1, className: "origin" });
+        return button(`${this.line}`, undefined, { title, tabIndex: -1, className: "origin" });
     }
 }
 
