@@ -41,7 +41,8 @@ function row({ axis, value, meaning, values = [] }, open, choose) {
     );
     select.addEventListener("change", () => {
         const chosen = values.find(({ key }) => key === select.value);
-        if (chosen) choose(chosen.edits);
+        // The table shows what the text has.
+        if (chosen && choose(chosen.edits) === false) select.value = value;
     });
     const current = values.find(({ current }) => current)?.summary ?? meaning;
     return element(

@@ -83,7 +83,11 @@ async function createPage(start, store) {
         failed,
         changed: (text) => store.set({ text }),
     });
-    const apply = (edits) => editor.apply(edits, analysed) || status.say("The text changed meanwhile: try again when the problems are up to date.");
+    const apply = (edits) => {
+        const isApplied = editor.apply(edits, analysed);
+        if (!isApplied) status.say("The text changed meanwhile: try again when the problems are up to date.");
+        return isApplied;
+    };
     let analysed = "";
     editor.setNames(start.techniques.map(({ key }) => key));
     const problems = createProblems({ list: byId("problems-list"), heading: byId("problems-heading") }, { go: editor.go, apply });
