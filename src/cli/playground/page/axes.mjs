@@ -12,7 +12,7 @@ import { inline } from "./markdown.mjs";
 /**
  * Creates the table.
  * @param {HTMLElement} parent
- * @param {(edits: object[]) => void} choose
+ * @param {(edits: object[]) => boolean | unknown} choose
  */
 export function createAxes(parent, choose) {
     let before = "";
