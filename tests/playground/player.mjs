@@ -23,7 +23,7 @@ export async function the_player_draws_what_the_cpu_device_draws(page, { address
         await page.goto(`${address}play/index.html#${choices}`);
         await drawn(page, before);
         await settled(page);
-        assert.match(await page.locator("#frame").textContent(), /^WebGPU/, choices);
+        assert.match(await page.locator("#frame").textContent(), /^WebGPU · [\d.,]+ ms · /, choices);
         const { different, covered, all } = await page.evaluate(compare, await expected(page));
         assert.ok(covered > all / 20, `${covered} of ${all} pixels are covered: ${choices}`);
         assert.ok(different < all / 200, `${different} of ${all} pixels differ: ${choices}`);

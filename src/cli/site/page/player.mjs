@@ -160,12 +160,12 @@ function describe({ key, title, summary, paper }, { words_per_pixel: words, tier
 }
 
 /** Returns a frame's statistics in a line. */
-function line({ ms, bytes: size, lost, loops }, { k }) {
+function line({ frame_ms: whole, bytes: size, lost, loops }, { k }) {
     const causes = Object.entries(lost?.by_counter ?? {}).filter(([, value]) => value > 0);
     const named = causes.map(([name, value]) => `${name} ${count(value)}`).join(", ");
     return [
         "WebGPU",
-        Number.isFinite(ms.frame) && milliseconds(ms.frame),
+        Number.isFinite(whole) && milliseconds(whole),
         Number.isFinite(size) && bytes(size),
         Number.isFinite(k) && `k = ${k}`,
         lost?.total > 0 ? `${count(lost.total)} fragments are lost (${named})` : "no fragment is lost",
