@@ -330,6 +330,16 @@ fn every_beginning_of_a_text_has_answers() {
     }
 }
 
+/// The time of an answer grows with the text, and not with its square: this text has a hundred thousand blocks in an unfinished item.
+#[test]
+fn an_item_of_many_blocks_has_answers() {
+    let (registry, text) = (Registry::builtin(), format!("buffer B {{ keep {}", "{}".repeat(100_000)));
+    let document = Document::new(&text, "long.fragbuf", &registry);
+    document.hover(text.len());
+    document.completion(text.len());
+    document.diagnostics();
+}
+
 /// Texts that no one writes, and offsets that are in no text.
 #[test]
 fn every_text_and_offset_has_answers() {

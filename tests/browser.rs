@@ -210,6 +210,23 @@ fn passes_have_times_if_they_are_requested() {
     assert_eq!(node("times.mjs", &[&folder]), "the times are right\n");
 }
 
+/// A frame in slices has the greatest value that one of its slices decides, and later frames use it.
+#[test]
+fn decisions_that_lag_hold_for_every_slice() {
+    let folder = folder("lag");
+    let predicted = program("buffer Few from mdt32_coplanar { allocation: predicted; }");
+    jobs::write_plan(&predicted, &folder.join("predicted"));
+    assert_eq!(node("lag.mjs", &[&folder]), "decisions that lag are right\n");
+}
+
+/// The page of the playground compiles nothing again that has failed, and copies boxes of objects once.
+#[test]
+fn the_page_repeats_no_failure() {
+    let folder = folder("frames");
+    jobs::write_plan(&program("buffer Peeled from f2b { objects: unpeeled; }"), &folder.join("boxes"));
+    assert_eq!(node("frames.mjs", &[&folder]), "the frames of the page are right\n");
+}
+
 /// Mistakes of a caller, what an adapter lacks, lost devices and lost fragments: each is an error or a report, in words.
 #[test]
 fn every_mistake_is_an_error_that_says_what_to_do() {
@@ -225,7 +242,7 @@ fn every_mistake_is_an_error_that_says_what_to_do() {
         ("regions", "buffer Regions from ab_sb { }", "wgsl", Form::Program),
         ("uniforms", uniforms, "wgsl", Form::Program),
         ("external", "buffer Behind from ab_ll { opaque: in_shader; }", "wgsl", Form::Program),
-        ("predicted", "buffer Few from mdt32_coplanar { allocation: predicted; }", "wgsl", Form::Program),
+        ("boxes", "buffer Peeled from f2b { objects: unpeeled; }", "wgsl", Form::Program),
         ("module", "buffer List from ab_ll { }", "wgsl", Form::Module),
         ("glsl", "buffer List from ab_ll { }", "glsl", Form::Program),
     ] {

@@ -36,8 +36,12 @@ fn text(bytes: &[u8]) -> String {
 }
 
 fn generated(variant: &Variant, targets: &[&str], group: u32) -> Generation {
+    generated_in(Form::Program, variant, targets, group)
+}
+
+fn generated_in(form: Form, variant: &Variant, targets: &[&str], group: u32) -> Generation {
     let targets: Vec<_> = targets.iter().map(|name| target(name).unwrap()).collect();
-    let request = Request { targets: &targets, form: Form::Program, prefix: "", group };
+    let request = Request { targets: &targets, form, prefix: "", group };
     generate(variant, &request, &Registry::builtin()).unwrap_or_else(|errors| panic!("{errors}"))
 }
 
@@ -227,6 +231,28 @@ fn headers_of_every_technique_have_the_values_of_their_plans() {
     }
     assert_eq!(printed.lines().count(), lines.len());
     assert!(lines.len() > 3000 && includes.lines().count() > 35, "{} lines", lines.len());
+}
+
+/// In module form, the vertex stage and its inputs are the caller's: the header has what the manifest has.
+#[test]
+fn a_header_of_modules_has_no_vertex_stage() {
+    let folder = folder("module");
+    let draft = Description::Technique("kplus_array".to_owned());
+    let variant = variant(&draft, &[], &Registry::builtin()).unwrap_or_else(|errors| panic!("{errors}"));
+    for (form, is_whole) in [(Form::Program, true), (Form::Module, false)] {
+        let generation = generated_in(form, &variant, &["glsl"], 0);
+        let json: Value = manifest(&generation, 0);
+        let header = c_header(&generation, "glass", "kplus_array", 0);
+        let blocks = json["uniform_blocks"].as_array().unwrap().iter().filter_map(|block| block["name"].as_str());
+        assert_eq!(blocks.clone().any(|name| name == "camera"), is_whole);
+        assert_eq!(json["vertex_inputs"].is_array(), is_whole);
+        assert_eq!((header.contains("view_projection"), header.contains("GLASS_LOCATION_")), (is_whole, is_whole));
+        assert!(blocks.into_iter().all(|name| header.contains(&format!("struct glass_{name} {{"))));
+        std::fs::write(folder.join("glass.h"), header).unwrap();
+        std::fs::write(folder.join("glass.c"), "#include \"glass.h\"\nint main(void) { return 0; }\n").unwrap();
+        cc(&folder, C, &["-Wno-unused", "-fsyntax-only", "glass.c"]);
+        cc(&folder, CPP, &["-Wno-unused", "-fsyntax-only", "glass.c"]);
+    }
 }
 
 /// Every operator of formulas, also where there is no value: each formula is the size of a resource.

@@ -1,5 +1,6 @@
 //! Plays sessions of an editor with `fragbuf lsp`, and sends it what no editor sends.
 
+use std::cell::RefCell;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
@@ -18,6 +19,8 @@ struct Client {
     server: Child,
     input: Option<ChildStdin>,
     messages: Receiver<Value>,
+    /// What was received.
+    received: RefCell<Vec<Value>>,
     next_id: u64,
 }
 
@@ -55,7 +58,7 @@ impl Client {
             }
         });
         let input = server.stdin.take();
-        Client { server, input, messages, next_id: 0 }
+        Client { server, input, messages, received: RefCell::default(), next_id: 0 }
     }
 
     fn initialized() -> Self {
@@ -83,7 +86,9 @@ impl Client {
     }
 
     fn receive(&self) -> Value {
-        self.messages.recv_timeout(PATIENCE).expect("an answer of the server")
+        let message = self.messages.recv_timeout(PATIENCE).expect("an answer of the server");
+        self.received.borrow_mut().push(message.clone());
+        message
     }
 
     /// Sends a request, and returns its answer. Notifications before it are skipped.
@@ -97,6 +102,16 @@ impl Client {
                 return message;
             }
         }
+    }
+
+    /// Returns the number of diagnostics that a file has after all that was sent.
+    fn newest_of(&mut self, uri: &str) -> usize {
+        // The diagnostics of another document come with those of what was sent before, and all of them before the next answer.
+        self.open("untitled:last", "buffer Mine from kb {}\n");
+        self.error("no/such/method", json!({}));
+        let received = self.received.borrow();
+        let mut lists = received.iter().rev().filter(|message| message["params"]["uri"] == uri);
+        lists.next().and_then(|message| message["params"]["diagnostics"].as_array()).map_or(0, Vec::len)
     }
 
     fn request(&mut self, method: &str, parameters: Value) -> Value {
@@ -215,6 +230,27 @@ fn a_mistake_is_reported_and_fixed() {
     let asked = json!({ "textDocument": { "uri": uri }, "range": range, "context": { "diagnostics": [] } });
     assert_eq!(client.request("textDocument/codeAction", asked), json!([]));
     client.notify("textDocument/didClose", json!({ "textDocument": { "uri": uri } }));
+    client.shut_down();
+}
+
+/// A list of diagnostics replaces that of the same file, also if another document has it.
+#[test]
+fn two_documents_have_the_errors_of_one_file() {
+    let folder = folder("shared");
+    std::fs::write(folder.join("x.wgsl"), "fn broken( {\n").unwrap();
+    let mut client = Client::initialized();
+    let uri = |name: &str| format!("file://{}", folder.join(name).display());
+    let text = "buffer Mine {\n    storage: wgsl(\"x.wgsl\");\n    keep 8;\n}\n";
+    client.open(&uri("a.fragbuf"), text);
+    client.open(&uri("b.fragbuf"), text);
+    client.notify("textDocument/didClose", json!({ "textDocument": { "uri": uri("a.fragbuf") } }));
+    assert!(client.newest_of(&uri("x.wgsl")) > 0, "b is open");
+    // `b` no longer names the file.
+    client.change(&uri("b.fragbuf"), 2, Value::Null, "buffer Mine from kb {}\n");
+    client.open(&uri("c.fragbuf"), text);
+    assert!(client.newest_of(&uri("x.wgsl")) > 0, "c is open");
+    client.change(&uri("c.fragbuf"), 2, Value::Null, "buffer Mine from kb {}\n");
+    assert_eq!(client.newest_of(&uri("x.wgsl")), 0);
     client.shut_down();
 }
 

@@ -17,7 +17,13 @@ pub struct Server {
 
 impl Server {
     pub fn start(arguments: &[&str]) -> Self {
+        Server::start_in(Path::new("."), arguments)
+    }
+
+    /// Starts a server whose current folder is `folder`.
+    fn start_in(folder: &Path, arguments: &[&str]) -> Self {
         let mut command = Command::new(env!("CARGO_BIN_EXE_fragbuf"));
+        command.current_dir(folder);
         command.args(["playground", "--no-open"]).args(arguments).stdout(Stdio::piped()).stderr(Stdio::null());
         let mut child = command.spawn().unwrap();
         let mut line = String::new();
@@ -212,7 +218,10 @@ fn files_outside_of_the_folder_are_not_read() {
     std::fs::copy("examples/user_storage/first_k.wgsl", inside.join("first_k.wgsl")).unwrap();
     let naming = |path: &str| format!("buffer Mine {{\n    storage: wgsl(\"{path}\");\n    keep 8;\n}}\n");
     std::os::unix::fs::symlink(&secret, inside.join("linked.wgsl")).unwrap();
-    let without = Server::start(&[]);
+    let near = folder.join("near");
+    std::fs::create_dir(&near).unwrap();
+    std::fs::copy("examples/user_storage/first_k.wgsl", near.join("mine.wgsl")).unwrap();
+    let without = Server::start_in(&near, &[]);
     let with = Server::start(&[inside.to_str().unwrap()]);
     let absolute = secret.display().to_string();
     for path in [absolute.as_str(), "../secret.wgsl", "linked.wgsl", "x/../../secret.wgsl", "/dev/zero", "/etc/passwd"]
@@ -235,6 +244,15 @@ fn files_outside_of_the_folder_are_not_read() {
                 assert_eq!(status, 422, "{name} {path}: {answer}");
             }
         }
+    }
+    // Without a folder, no message names a file of this machine.
+    for (name, body) in [
+        ("generate", json!({ "text": "buffer Mine { storage: mine; keep 8; }", "target": "wgsl" })),
+        ("geometry", json!({ "text": "buffer Mine { storage: mine; keep 8; }", "scene": "cubes" })),
+        ("render", picture("buffer Mine { storage: mine; keep 8; }")),
+    ] {
+        let (status, answer) = without.post(name, &body);
+        assert!(status == 422 && !answer.to_string().contains("mine.wgsl"), "{name}: {answer}");
     }
     let (_, answer) = with.post("analyse", &json!({ "text": naming("first_k.wgsl") }));
     assert!(answer["description"].is_object(), "{answer}");
@@ -299,6 +317,7 @@ fn models_are_drawn_without_the_files_that_they_name() {
     assert!(answer["png"] == json!(png), "the images differ");
     let (status, answer) = server.post("predict", &picture_with("scene", scene.clone()));
     assert_eq!((status, answer["histogram"].as_array().map(Vec::len)), (200, Some(1024)), "{answer}");
+    assert_eq!(answer["scene"], scene, "the path of this machine");
     let (status, answer) = server.post("geometry", &json!({ "text": KB, "scene": scene }));
     assert!(status == 200 && answer.as_str().unwrap().contains("\"triangles\":1"), "{answer}");
     let (status, start) = server.get("/api/start");

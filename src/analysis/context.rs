@@ -107,6 +107,22 @@ pub(super) fn items(text: &str) -> Vec<Range<usize>> {
     firsts.windows(2).filter_map(range).collect()
 }
 
+/// What has been read of an item.
+struct ItemScan {
+    first: usize,
+    bars: usize,
+    /// The first token behind the parameters of its closure.
+    body: Option<usize>,
+    /// The last bracket that is in no other.
+    bracket: usize,
+}
+
+impl ItemScan {
+    fn new(first: usize) -> Self {
+        ItemScan { first, bars: 0, body: None, bracket: first }
+    }
+}
+
 /// The tokens before a word, without comments.
 struct Reader<'a> {
     text: &'a str,
@@ -155,41 +171,47 @@ impl<'a> Reader<'a> {
         self.firsts_of_items(from).last().copied().unwrap_or(from)
     }
 
-    /// Returns the first token of each item, and the end of the tokens if an item ends there.
+    /// Returns the first token of each item, and the end of the tokens if an item ends there. Each token is read once.
     fn firsts_of_items(&self, from: usize) -> Vec<usize> {
-        let (mut first, mut depth) = (from, 0_usize);
-        let mut firsts = vec![first];
+        let (mut item, mut depth) = (ItemScan::new(from), 0_usize);
+        let mut firsts = vec![from];
         for index in from..self.tokens.len() {
-            match (self.tokens.get(index).map(|token| token.kind), self.word(index)) {
-                (Some(Kind::Open), _) => depth += 1,
-                (Some(Kind::Close), closed) => {
-                    depth = depth.saturating_sub(1);
-                    if depth == 0 && closed == "}" && self.is_end(first, index) {
-                        first = index + 1;
-                        firsts.push(first);
+            let word = self.word(index);
+            let is_end = match self.tokens.get(index).map(|token| token.kind) {
+                Some(Kind::Open) => {
+                    if depth == 0 {
+                        item.bracket = index;
                     }
+                    depth += 1;
+                    false
                 }
-                (_, ";") if depth == 0 => {
-                    first = index + 1;
-                    firsts.push(first);
+                Some(Kind::Close) => {
+                    depth = depth.saturating_sub(1);
+                    depth == 0 && word == "}" && self.is_end(&item)
                 }
-                _ => {}
+                _ => depth == 0 && word == ";",
+            };
+            if word == "|" {
+                item.bars += 1;
+                item.body = if item.bars == 2 { Some(index + 1) } else { item.body };
+            }
+            if is_end {
+                item = ItemScan::new(index + 1);
+                firsts.push(item.first);
             }
         }
         firsts
     }
 
-    /// Whether an item ends with the `}` at `index`.
-    fn is_end(&self, first: usize, index: usize) -> bool {
-        if self.word(first + 1) == ":" {
+    /// Whether an item ends with the `}` of its last bracket.
+    fn is_end(&self, item: &ItemScan) -> bool {
+        if self.word(item.first + 1) == ":" {
             return false;
         }
-        match self.word(first) {
+        match self.word(item.first) {
             // The closure is a block, or an expression with blocks.
             "where" | "keep" | "resolve" => {
-                let bars = (first..index).filter(|at| self.word(*at) == "|");
-                let body = bars.skip(1).map(|bar| bar + 1).next();
-                body.is_some_and(|body| self.word(body) == "{" && closing(self.tokens, body) == Some(index))
+                item.body.is_some_and(|body| body == item.bracket && self.word(body) == "{")
             }
             _ => true,
         }

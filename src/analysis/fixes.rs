@@ -1,7 +1,7 @@
 //! Fixes as edits: the help of a diagnostic has them as source in backquotes, and this module finds the part of the text that each replaces.
 //!
-//! Input: a document, and a diagnostic of it. Output: edits after which the diagnostic is gone and no other has come. Candidates are
-//! tried through the compiler, the smallest change first, so that no fix depends on the wording of a help.
+//! Input: a document, and a diagnostic of it. Output: edits after which the diagnostic is gone; errors that it hid may have come.
+//! Candidates are tried through the compiler, the smallest change first, so that no fix depends on the wording of a help.
 
 use std::ops::Range;
 
@@ -82,7 +82,7 @@ impl<'d> Trials<'d> {
         Fix { title, edits: edits.collect() }
     }
 
-    /// Tests whether the diagnostic is gone after a change, and no other error has come.
+    /// Tests whether the diagnostic is gone after a change, and there are fewer errors, none, or in their place only those that it hid.
     fn is_fix(&mut self, diagnostic: &Diagnostic, change: &Change) -> bool {
         let text = self.document.text;
         let same = change.iter().all(|(range, new)| text.get(range.clone()) == Some(new.as_str()));

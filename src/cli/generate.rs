@@ -185,6 +185,7 @@ struct Header {
 fn stem<'a>(description: &'a str, registry: &Registry) -> &'a str {
     match registry.technique(description) {
         Some(_) => description,
+        None if description == "-" => "description",
         None => Path::new(description).file_stem().and_then(|stem| stem.to_str()).unwrap_or(description),
     }
 }

@@ -13,7 +13,7 @@ use fragbuf::vocabulary::{
 };
 use fragbuf::{Draft, Form, Generation, Plan, Registry, Request, SourceSpan, Variant, generate, manifest, target};
 use fragbuf_cpu::{Code, Device, Mesh, Settings};
-use fragbuf_frame::{PoolSize, Sizing, Value as Uniform};
+use fragbuf_frame::{Decisions, PoolSize, Sizing, Value as Uniform};
 use fragbuf_model::UniformType;
 use serde_json::{Value, json};
 
@@ -180,7 +180,8 @@ fn job(name: &str, variant: &Variant, (registry, judge): (&Registry, Judge), run
     let loses_nothing =
         judge == Judge::Reference && !plan.hazards.iter().any(|hazard| hazard.permits.shows()) && is_exact(plan);
     let run = |what: &str, scenes: &[(Vec<u8>, Vec<Quad>)], slice: Option<u32>, sizing: Sizing, options: Value| {
-        let settings = Settings { slice, sizing, ..Settings::new(SIZE[0], SIZE[1]) };
+        let decisions = if options["readback"] == "lag" { Decisions::LAGGED } else { Decisions::Immediate };
+        let settings = Settings { slice, sizing, decisions, ..Settings::new(SIZE[0], SIZE[1]) };
         let images = images((variant, registry), judge, plan, scenes, &textures, settings);
         let slices = slice.map_or(1, |rows| u64::from(SIZE[1].div_ceil(rows)));
         let numbers: Vec<usize> = (0..scenes.len()).collect();
@@ -205,6 +206,8 @@ fn job(name: &str, variant: &Variant, (registry, judge): (&Registry, Judge), run
             }
             if plan.frame.decisions().any(|decision| decision.may_lag) {
                 all.push(run("decisions that lag", &scenes, None, Sizing::Auto, json!({ "readback": "lag" })));
+                let options = json!({ "readback": "lag", "rows": 5 });
+                all.push(run("decisions that lag, in slices", &scenes, Some(5), Sizing::Auto, options));
             }
         }
     }

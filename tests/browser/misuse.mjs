@@ -1,8 +1,12 @@
-// Uses the WebGPU host wrongly, and checks that each mistake is an error that says what to do: `node misuse.mjs FOLDER`. The folder has
-// generated plans: `list`, `regions`, `uniforms`, `external`, `predicted`, `module`, and `glsl` without portable WGSL.
+/**
+ * Uses the WebGPU host wrongly, and checks that each mistake is an error that says what to do: `node misuse.mjs FOLDER`. The folder has
+ * generated plans: `list`, `regions`, `uniforms`, `external`, `boxes`, `module`, and `glsl` without portable WGSL.
+ */
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { strict as assert } from "node:assert";
+import { setFlagsFromString } from "node:v8";
+import { runInNewContext } from "node:vm";
 
 import { FragmentBuffer, requirements } from "../../backends/run/webgpu/fragbuf.mjs";
 import { adapter as open } from "./adapter.mjs";
@@ -37,6 +41,9 @@ const draw = (pass) => {
 };
 const call = { target, viewProjection: identity, draw };
 const create = (plan, more = {}, file = files(plan)) => FragmentBuffer.create(device, manifest(plan), file, { ...options, ...more });
+
+/** Waits for one turn of the event loop: promises that are settled have run their reactions. */
+const turn = () => new Promise((done) => setImmediate(done));
 
 let count = 0;
 /** Checks that a call fails with a message that has all of these parts. */
@@ -113,12 +120,32 @@ await fails(() => list.render({ ...call, draw: (pass) => pass.draw(6) }), "WebGP
 await fails(() => list.resize([0, 1]), "size: [width, height]");
 await fails(() => list.setSymbols({ fragments: -1 }), "`fragments` is -1");
 await fails(() => list.encode(device.createCommandEncoder(), call), "`readback: \"none\"`");
-const boxed = { ...call, objects: [{ min: [0, 0, 0], max: [1, 1, 1] }] };
-await fails(() => list.render(boxed), "least", "greatest");
+
+// Objects: without queries of boxes, any number of them draws everything.
+const boxes = await create("boxes");
+const many = Array.from({ length: 5000 }, () => ({ least: [-1, -1, 0], greatest: [1, 1, 1] }));
+await fails(() => boxes.render({ ...call, objects: many }), "more than 4096 queries", "group");
+await fails(() => boxes.render({ ...call, objects: [{ min: [0, 0, 0], max: [1, 1, 1] }] }), "least", "greatest");
+await list.render({ ...call, objects: many, draw: (pass, { objects }) => { assert.equal(objects, null); draw(pass); } });
+
+// Calls while another one waits.
 const first = list.render(call);
-await fails(() => list.render(call), "await `render`");
+await fails(() => list.render(call), "a frame is still being drawn", "await `render`");
 await fails(() => list.resize([4, 4]), "await `render`");
+await fails(() => list.setSymbols({ fragments: 9 }), "await `render`");
 await first;
+const resized = list.resize([4, 4]);
+await fails(() => list.render(call), "memory is still being allocated", "await `resize`");
+await fails(() => list.resize([16, 12]), "await `resize`");
+await fails(() => list.setSymbols({ fragments: 9 }), "await `resize`");
+await resized;
+await list.render({ ...call, target: texture([4, 4], "rgba8unorm") });
+await list.resize(size);
+const set = list.setSymbols({ fragments: 480 });
+await fails(() => list.render(call), "await `setSymbols`");
+await fails(() => list.resize([4, 4]), "await `setSymbols`");
+await set;
+assert.equal(list.symbol("fragments"), 480);
 // After all these errors it works.
 await list.render(call);
 assert.deepEqual((await list.counters()).lost, 0);
@@ -142,14 +169,17 @@ const reports = [];
 const small = await create("list", { symbols: { fragments: 5 }, onLoss: (counters) => reports.push(counters) });
 await small.render(call);
 assert.equal((await small.counters()).lost, 8 * 6 - 5);
-await new Promise((done) => setTimeout(done, 50));
+await turn();
+assert.equal(reports.length, 1);
 assert.equal(reports[0].counts.pool_exhausted, 8 * 6 - 5);
 const warnings = [];
 console.warn = (...parts) => warnings.push(parts.join(" "));
 const quiet = await create("list", { symbols: { fragments: 5 }, onLoss: undefined });
 for (let frame = 0; frame < 3; frame++) {
     await quiet.render(call);
-    await new Promise((done) => setTimeout(done, 20));
+    // The counters that the frame itself reads arrive before these.
+    await quiet.counters();
+    await turn();
 }
 assert.equal(warnings.length, 1);
 assert.match(warnings[0], /43 fragments are missing/);
@@ -205,18 +235,39 @@ await own.render({ ...call, target: copied, clear: [0, 0, 1, 1], viewProjection:
 assert.deepEqual(await pixel(copied), [0, 64, 191, 255]);
 await fails(() => create("module", { material: ({ code }) => ({ code, vertex: "none", fragment: "none", vertexBuffers: [] }) }), "the pipeline of the pass");
 
-// A decision that lags: k grows in a frame after the one that needs more, and shrinks once eight frames in a row have needed less.
-const lagging = await create("predicted", { readback: "lag" });
-const layers = async (count) => {
-    await lagging.render({ ...call, draw: (pass) => { for (let layer = 0; layer < count; layer++) draw(pass); } });
-    // The words arrive.
-    await lagging.counters();
-    return lagging.symbol("k");
-};
-assert.deepEqual([await layers(1), await layers(3), await layers(3)], [1, 1, 3]);
-const later = [];
-for (let frame = 0; frame < 10; frame++) later.push(await layers(2));
-assert.deepEqual(later, [3, 3, 3, 3, 3, 3, 3, 3, 2, 2]);
+// A fragment buffer that cannot be created frees what it has created.
+const owned = new Set();
+const timed = await (await open()).requestDevice({ requiredFeatures: ["timestamp-query"] });
+for (const name of ["createBuffer", "createTexture", "createQuerySet"]) {
+    const created = timed[name];
+    timed[name] = (descriptor) => {
+        const object = created.call(timed, descriptor);
+        const { destroy } = object;
+        object.destroy = () => {
+            owned.delete(descriptor.label);
+            destroy.call(object);
+        };
+        owned.add(descriptor.label);
+        return object;
+    };
+}
+const createTimed = (more) => FragmentBuffer.create(timed, manifest("list"), files("list"), { ...options, ...more, times: true });
+await fails(() => createTimed({ memory: 100 }), "budget `memory` is 100");
+assert.deepEqual([...owned], []);
+const whole = await createTimed();
+assert(owned.size > 3, `the fragment buffer has ${[...owned]}`);
+whole.destroy();
+assert.deepEqual([...owned], []);
+
+// The device keeps no fragment buffer alive.
+setFlagsFromString("--expose-gc");
+const collect = runInNewContext("gc");
+const dropped = await (async () => new WeakRef(await create("list")))();
+for (let attempt = 0; attempt < 20 && dropped.deref(); attempt++) {
+    await turn();
+    collect();
+}
+assert.equal(dropped.deref(), undefined);
 
 // The end of a fragment buffer, and of its device.
 list.destroy();

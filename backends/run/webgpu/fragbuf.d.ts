@@ -46,7 +46,8 @@ export interface Options {
     perPixel?: number;
     /**
      * What a frame waits for. `all`, the default: the decisions of host steps, and whether a loop ends. `lag`: as `all`, but decisions that
-     * may lag take effect in a later frame. `loops`: whether a loop ends; memory is reserved for `perPixel` fragments. `none`: nothing;
+     * may lag take effect in a later frame, with the greatest value that a slice needed. The first frame waits for them, and so does the
+     * first one after a change of the size or of a symbol. `loops`: whether a loop ends; memory is reserved for `perPixel` fragments. `none`: nothing;
      * loops run to their limits, and frames can be recorded with `encode`.
      */
     readback?: "all" | "lag" | "loops" | "none";
@@ -108,7 +109,10 @@ export interface Call {
     symbols?: Record<string, number>;
     /** External textures of the plan: `opaque`, `importance`. */
     textures?: Record<string, GPUTexture>;
-    /** The boxes of your objects, for plans that draw boxes. `draw` gets the numbers of those to draw; all of them if it is null. */
+    /**
+     * The boxes of your objects, for plans that draw boxes; other plans ignore them. `draw` gets the numbers of those to draw; all of them
+     * if it is null. Pass the same array while the boxes stay the same, because another one is copied to the device again.
+     */
     objects?: ObjectBox[];
 }
 
@@ -165,7 +169,7 @@ export class FragmentBuffer {
     readonly allocatedBytes: number;
     /** Returns the value of a symbol of the manifest. */
     symbol(name: string): number;
-    /** Resizes the frame. */
+    /** Resizes the frame. Await it, as `setSymbols` and `render`, before the next of these calls: one that begins earlier is an error. */
     resize(size: [number, number]): Promise<void>;
     /** Sets symbols from the next frame on. */
     setSymbols(symbols: Record<string, number>): Promise<void>;

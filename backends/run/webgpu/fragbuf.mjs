@@ -12,7 +12,7 @@ import { cameraWords, checkedDraw, checkedOptions, viewOf } from "./arguments.mj
 import { Boxes, isDecidable } from "./boxes.mjs";
 import { DeviceError, ExcessError, scoped } from "./errors.mjs";
 import { Frame } from "./frame.mjs";
-import { decide } from "./host.mjs";
+import { LaggedValues } from "./host.mjs";
 import { Memory, UniformSlots } from "./memory.mjs";
 import { compile, interleaved } from "./passes.mjs";
 import { planOf, SCHEMA, Values } from "./plan.mjs";
@@ -23,12 +23,6 @@ import { UniformBlock } from "./uniforms.mjs";
 
 export { requirements, SCHEMA };
 
-/** The frames whose decisions count for a symbol that lags: it grows at once, and shrinks after as many frames. */
-const LAG_FRAMES = 8;
-
-/** The greatest number of host steps whose words are copied for later frames. */
-const MOST_COPIES = 4;
-
 /** A fragment buffer on a device, for frames of one size. */
 export class FragmentBuffer {
     #state;
@@ -37,12 +31,11 @@ export class FragmentBuffer {
     #readback;
     /** Why no further frame can be drawn. */
     #end;
-    #isBusy = false;
+    /** The method that changes memory or draws, until it ends. */
+    #running;
     /** Whether the device has rejected memory: it is allocated again before the next frame. */
     #isStale = false;
     #unread = false;
-    #lag = new Map();
-    #copies = [];
 
     /**
      * Compiles every pass and allocates memory.
@@ -63,31 +56,40 @@ export class FragmentBuffer {
         check(plan, values, device, settings.format, "device");
         const buffer = new FragmentBuffer();
         buffer.#device = device;
-        device.lost.then(({ message }) => buffer.#close(`the device was lost (${message || "no reason given"})`));
+        FragmentBuffer.#closeWhenLost(device, buffer);
         const passes = await compile(device, plan, values, loadFile, settings);
         buffer.#assertOpen();
         buffer.#uniforms = new UniformBlock(plan.uniform_blocks.find((block) => block.name === "uniforms"));
         buffer.#readback = new Readback(device);
         const counted = plan.steps.flatMap((step) => (step.until?.no_samples ? [step.until.no_samples] : []));
-        const measure = () => new Timestamps(device);
-        const timestamps = settings.times ? await buffer.#scoped("the queries of `times`", measure) : undefined;
         buffer.#state = {
             device, plan, values, passes, options: settings,
             memory: new Memory(device, plan),
-            slots: new UniformSlots(device, plan.uniform_blocks),
             groups: new Map(),
             queries: { passes: [...new Set(counted)], count: 0 },
-            timestamps,
             flipped: plan.exchanges.map(() => false),
-            apply: (decided) => {
-                buffer.#apply(decided);
-                buffer.#remember(decided);
-            },
+            apply: (decided) => buffer.#apply(decided),
             setRows: (rows) => buffer.#setRows(rows),
-            copyOf: (encoder, reads) => (buffer.#copies.length < MOST_COPIES ? buffer.#readback.copy(encoder, reads) : undefined),
+            copyOf: (encoder, reads) => buffer.#readback.copy(encoder, reads),
         };
-        await buffer.resize(settings.size);
+        try {
+            await buffer.#scoped("the uniform blocks, or the queries of `times`", () => {
+                buffer.#state.slots = new UniformSlots(device, plan.uniform_blocks);
+                if (settings.times) buffer.#state.timestamps = new Timestamps(device);
+            });
+            await buffer.#reallocate(settings.size, values.set);
+        } catch (error) {
+            buffer.#free();
+            throw error;
+        }
         return buffer;
+    }
+
+    /** Closes a fragment buffer when its device is lost. The device refers to it weakly, so that an unused one can be collected. */
+    static #closeWhenLost(device, buffer) {
+        const weak = new WeakRef(buffer);
+        // Engines may keep every variable that a closure of the same function uses: no closure here uses `buffer`.
+        device.lost.then(({ message }) => weak.deref()?.#close(`the device was lost (${message || "no reason given"})`));
     }
 
     /** The vertex buffer layout of passes that draw the scene, unless `vertexBuffers` replaces it: one vertex after the other. */
@@ -116,15 +118,15 @@ export class FragmentBuffer {
 
     /** Resizes the frame to `[width, height]` pixels. External textures must be supplied again. */
     async resize(size) {
-        this.#assertUsable();
-        await this.#reallocate(checkedSize(size), this.#state.values.set);
-        this.#state.memory.external.clear();
+        await this.#alone("resize", async () => {
+            await this.#reallocate(checkedSize(size), this.#state.values.set);
+            this.#state.memory.external.clear();
+        });
     }
 
     /** Sets symbols, such as `k`, from the next frame on. Reallocates memory where they need more or less. */
     async setSymbols(symbols) {
-        this.#assertUsable();
-        await this.#setSymbols(symbols);
+        await this.#alone("setSymbols", () => this.#setSymbols(symbols));
     }
 
     async #setSymbols(symbols) {
@@ -141,12 +143,14 @@ export class FragmentBuffer {
      * @returns {Promise<import("./fragbuf.d.ts").FrameReport>}
      */
     async render(call) {
-        this.#assertUsable();
-        this.#isBusy = true;
+        return this.#alone("render", () => this.#render(call));
+    }
+
+    async #render(call) {
+        if (this.#isStale) await this.#reallocate(this.#state.size, this.#state.values.set);
+        if (call?.symbols) await this.#setSymbols(call.symbols);
+        let frame, run, answer;
         try {
-            if (this.#isStale) await this.#reallocate(this.#state.size, this.#state.values.set);
-            if (call?.symbols) await this.#setSymbols(call.symbols);
-            let frame, run, answer;
             for (;;) {
                 // Nothing waits before the first part of a frame is submitted: a texture of a canvas is usable until then.
                 const { done, value } = await this.#scoped("the frame", () => {
@@ -164,14 +168,17 @@ export class FragmentBuffer {
                 answer = await this.#readback.read(value).catch((error) => this.#fail(error));
                 frame.encoder = this.#device.createCommandEncoder({ label: `fragbuf ${this.#state.plan.name}` });
             }
-            this.#copies.push(...frame.later.map(({ step, staging }) => this.#readback.arriving(step, staging)));
-            this.#unread = true;
-            this.#state.timestamps?.end();
-            this.#reportLosses();
-            return { loops: frame.loops };
-        } finally {
-            this.#isBusy = false;
+        } catch (error) {
+            frame?.abandon();
+            throw error;
         }
+        const { lagged, timestamps } = this.#state;
+        lagged.remember(frame.decided);
+        lagged.store(frame.copies.map(({ step, staging }) => this.#readback.arriving(step, staging)));
+        this.#unread = true;
+        timestamps?.end();
+        this.#reportLosses();
+        return { loops: frame.loops };
     }
 
     /**
@@ -228,15 +235,21 @@ export class FragmentBuffer {
     /** Frees all memory. The device stays yours. */
     destroy() {
         this.#close("it was destroyed");
+        this.#free();
+    }
+
+    /** Frees what has been created so far. */
+    #free() {
         const { memory, slots, queries, counterStore, boxes, timestamps } = this.#state;
-        const owned = [memory, slots.buffer, queries.set, counterStore.buffer, boxes, timestamps, this.#readback];
+        const owned = [memory, slots?.buffer, queries.set, counterStore?.buffer, boxes, timestamps, this.#readback];
         owned.forEach((object) => object?.destroy());
     }
 
     /** Checks the caller's arguments and prepares a frame. */
     #begin(call) {
         const { memory, plan, size, slots, options, queries } = this.#state;
-        const objects = call?.objects?.length > 0 ? call.objects : undefined;
+        const hasBoxes = plan.steps.some((step) => step.objects === "boxes");
+        const objects = hasBoxes && call?.objects?.length > 0 ? call.objects : undefined;
         const draw = checkedDraw(call);
         for (const [name, texture] of Object.entries(call.textures ?? {})) memory.supply(name, texture, size);
         plan.resources.filter((resource) => resource.init === "external").forEach((resource) => memory.texture(resource.name));
@@ -289,9 +302,7 @@ export class FragmentBuffer {
         });
         Object.assign(this.#state, { size, rows, values: sliced });
         this.#isStale = false;
-        const lagged = options.readback === "lag" ? plan.steps.filter((step) => step.may_lag) : [];
-        this.#lag = new Map(lagged.flatMap((step) => step.sets).map((name) => [name, []]));
-        this.#copies = [];
+        this.#state.lagged = new LaggedValues(plan, options.readback);
     }
 
     /** Sets what a host step has decided, and allocates memory for it. */
@@ -307,30 +318,21 @@ export class FragmentBuffer {
         memory.allocate(values, size);
     }
 
-    /** Stores the values of symbols that lag. */
-    #remember(decided) {
-        for (const [name, value] of decided) {
-            const values = this.#lag.get(name);
-            if (values) this.#lag.set(name, [...values, value].slice(-LAG_FRAMES));
-        }
-    }
-
     /** Draws lower slices from now on. Memory for higher ones stays. */
     #setRows(rows) {
         const { values } = this.#state;
         Object.assign(this.#state, { rows, values: values.withRows(rows) });
     }
 
-    /** Applies what the host steps of earlier frames decide. A symbol has the greatest value that the last frames needed. */
+    /** Sets the symbols that lag to what earlier frames have decided: each to the greatest value that a slice of the last frames needed. */
     #applyLagged() {
-        const arrived = this.#copies.filter((copy) => copy.words);
-        if (arrived.length === 0) return;
-        this.#copies = this.#copies.filter((copy) => !copy.words && !copy.isLost);
-        for (const { step, words } of arrived) this.#remember(decide(step, words, this.#state.values));
-        const greatest = [...this.#lag].filter(([, values]) => values.length > 0).map(([name, values]) => [name, Math.max(...values)]);
+        const { lagged, values } = this.#state;
+        lagged.decideArrived(values);
+        const { current } = lagged;
+        if (current.every(([name, value]) => values.decided.get(name) === value)) return;
         for (;;) {
             try {
-                return this.#apply(greatest);
+                return this.#apply(current);
             } catch (error) {
                 if (!(error instanceof ExcessError) || this.#state.rows === 1) throw error;
                 this.#setRows(Math.ceil(this.#state.rows / 2));
@@ -375,6 +377,19 @@ export class FragmentBuffer {
 
     #assertUsable() {
         this.#assertOpen();
-        if (this.#isBusy) throw new Error("a frame is still being drawn: await `render` before you call this fragment buffer again");
+        if (!this.#running) return;
+        const what = this.#running === "render" ? "a frame is still being drawn" : "memory is still being allocated";
+        throw new Error(`${what}: await \`${this.#running}\` before you call this fragment buffer again`);
+    }
+
+    /** Runs a method that changes memory or draws. Another one that begins meanwhile is an error. */
+    async #alone(name, run) {
+        this.#assertUsable();
+        this.#running = name;
+        try {
+            return await run();
+        } finally {
+            this.#running = undefined;
+        }
     }
 }

@@ -6,7 +6,7 @@
  * @module
  */
 import { ExcessError } from "./errors.mjs";
-import { decide } from "./host.mjs";
+import { decide, raise } from "./host.mjs";
 
 /** One frame. */
 export class Frame {
@@ -23,8 +23,12 @@ export class Frame {
         this.clears = new Map();
         /** How loops with a condition ended. @type {import("./fragbuf.d.ts").LoopReport[]} */
         this.loops = [];
-        /** Words that host steps of a later frame use. */
-        this.later = [];
+        /** Copies of the words of host steps that lag, of all slices. */
+        this.copies = [];
+        /** The greatest values that the slices have decided. @type {Map<string, number>} */
+        this.decided = new Map();
+        /** Whether host steps that lag copy their words. Either every slice does, or none. */
+        this.copiesWords = state.lagged.copiesWords;
     }
 
     /** Records the frame, slice by slice. A slice whose fragments do not fit is drawn again, with half of its rows. */
@@ -35,13 +39,16 @@ export class Frame {
         this.firstRow = 0;
         for (let slice = 0; this.firstRow < size[1]; ) {
             const { rows } = this.state;
+            const copied = this.copies.length;
             try {
                 yield* this.#slice();
             } catch (error) {
                 if (!(error instanceof ExcessError) || rows === 1 || this.isSliceWritten) throw error;
                 this.state.setRows(Math.ceil(rows / 2));
+                this.#dropCopies(copied);
                 continue;
             }
+            raise(this.decided, this.sliceDecided);
             flipped = plan.exchanges.map((pair, index) => this.#isOdd(pair) !== base[index]);
             // The next slice clears the counters.
             const { bytes, buffer } = counterStore;
@@ -50,6 +57,15 @@ export class Frame {
             counterStore.slices = ++slice;
         }
         this.state.flipped = flipped;
+    }
+
+    /** Drops the copies of a frame that is not drawn. */
+    abandon() {
+        this.#dropCopies(0);
+    }
+
+    #dropCopies(first) {
+        this.copies.splice(first).forEach(({ staging }) => staging.destroy());
     }
 
     *#slice() {
@@ -61,6 +77,8 @@ export class Frame {
         this.dropped = new Map();
         /** The query of boxes whose result has not been read. */
         this.boxQuery = undefined;
+        /** What host steps have decided in this slice. */
+        this.sliceDecided = new Map();
         /** Whether the slice has written the caller's target. */
         this.isSliceWritten = false;
         const { steps } = this.state.plan;
@@ -335,20 +353,21 @@ export class Frame {
         return { words, samples };
     }
 
-    /** Runs a host step, or copies its words for a later frame. */
+    /** Runs a host step, or copies its words for a later frame if earlier frames have decided. */
     *#host(step) {
-        const { values, options } = this.state;
+        const { values, lagged } = this.state;
         if (!values.reserve.counts || step.sets.some((name) => values.set.has(name))) return;
         const reads = step.reads.map(({ resource, first, count }) => {
             const buffer = this.state.memory.buffers.get(this.#physical(resource, step));
             return { buffer, offset: 4 * this.#value(first), size: 4 * this.#value(count) };
         });
-        if (options.readback === "lag" && step.may_lag && step.sets.every((name) => values.decided.has(name))) {
-            const staging = this.state.copyOf(this.encoder, reads);
-            if (staging) this.later.push({ step, staging });
+        if (lagged.covers(step)) {
+            if (this.copiesWords) this.copies.push({ step, staging: this.state.copyOf(this.encoder, reads) });
             return;
         }
         const { words } = yield* this.#wait(reads);
-        this.state.apply(decide(step, words, values));
+        const decided = decide(step, words, values);
+        this.state.apply(decided);
+        raise(this.sliceDecided, decided);
     }
 }

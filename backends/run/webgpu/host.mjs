@@ -1,10 +1,17 @@
 /**
- * The host functions of a manifest. Each takes the words that its step reads, and returns the values of the symbols that it sets.
+ * The host functions of a manifest, and the values that they set for later frames. A host function takes the words that its step reads, and
+ * returns the values of the symbols that it sets.
  * @module
  */
 import { ExcessError } from "./errors.mjs";
 
 /** @typedef {import("./plan.mjs").Values} Values */
+
+/** The frames whose greatest value a symbol that lags has. So it grows with the next frame, and shrinks after as many frames. */
+const LAG_FRAMES = 8;
+
+/** The greatest number of frames whose words are copied and not used yet. Further frames copy none. */
+const MOST_COPIES = 4;
 
 /** @type {Record<string, (words: Uint32Array, values: Values) => number[]>} */
 const FUNCTIONS = {
@@ -51,6 +58,69 @@ export function decide(step, words, values) {
         }
         return [name, results[index]];
     });
+}
+
+/** Adds values to a map, which has the greatest value of each name. */
+export function raise(greatest, decided) {
+    for (const [name, value] of decided) greatest.set(name, Math.max(greatest.get(name) ?? value, value));
+}
+
+/**
+ * The values of host steps that take effect in a later frame. A frame decides a value in each of its slices, and the greatest one counts
+ * once the frame has ended: a slice with less memory than it needs loses fragments.
+ */
+export class LaggedValues {
+    /**
+     * @param {ReturnType<typeof import("./plan.mjs").planOf>} plan
+     * @param {string} readback The option `readback`.
+     */
+    constructor(plan, readback) {
+        const steps = readback === "lag" ? plan.steps.filter((step) => step.may_lag) : [];
+        /** The values of the last frames, by symbol. @type {Map<string, number[]>} */
+        this.history = new Map(steps.flatMap((step) => step.sets).map((name) => [name, []]));
+        /** The copied words of each frame. @type {{ step: object, words?: Uint32Array, isLost: boolean }[][]} */
+        this.frames = [];
+    }
+
+    /** Whether no frame waits for a step: an earlier frame has decided every symbol that it sets. */
+    covers(step) {
+        return Boolean(step.may_lag) && step.sets.every((name) => this.history.get(name)?.length > 0);
+    }
+
+    /** Whether the next frame copies words: a device that is some frames behind has enough of them. */
+    get copiesWords() {
+        return this.frames.length < MOST_COPIES;
+    }
+
+    /** Stores the copies of a frame. */
+    store(copies) {
+        if (copies.length > 0) this.frames.push(copies);
+    }
+
+    /** Stores the greatest values of a frame that has ended. */
+    remember(greatest) {
+        for (const [name, value] of greatest) {
+            const values = this.history.get(name);
+            if (values) this.history.set(name, [...values, value].slice(-LAG_FRAMES));
+        }
+    }
+
+    /** Decides from the words of every frame that has all of them. */
+    decideArrived(values) {
+        const { frames } = this;
+        this.frames = frames.filter((copies) => copies.some(({ words, isLost }) => !words && !isLost));
+        for (const copies of frames.filter((copies) => copies.every(({ words }) => words))) {
+            const greatest = new Map();
+            for (const { step, words } of copies) raise(greatest, decide(step, words, values));
+            this.remember(greatest);
+        }
+    }
+
+    /** Returns the symbols with the values of the next frame. */
+    get current() {
+        const decided = [...this.history].filter(([, values]) => values.length > 0);
+        return decided.map(([name, values]) => [name, Math.max(...values)]);
+    }
 }
 
 /** Returns the greatest k from 1 to `most` whose buffers fit into the description's budget. */

@@ -64,7 +64,7 @@ pub struct Name {
     pub span: SourceSpan,
     /// Its kind.
     pub kind: NameKind,
-    /// The name with its type, as Rust declares it: `let x: f32`, `fn sqrt(self: f32) -> f32`.
+    /// The name with its type, as Rust declares it: `x: f32`, `mut x: f32`, `fn sqrt(self: f32) -> f32`.
     pub signature: String,
     /// A remark on differences between Rust and shaders; may be empty.
     pub note: String,
@@ -102,7 +102,7 @@ pub fn inspect(source: &str, file: &str) -> Inspection {
     }
 }
 
-/// Whether a name stands for the one that a user is typing.
+/// Tests whether a name begins as the one that stands for what a user is typing.
 pub(crate) fn is_placeholder(name: &str) -> bool {
     name.starts_with(PLACEHOLDER)
 }

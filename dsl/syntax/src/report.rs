@@ -3,7 +3,7 @@
 use fragbuf_model::{Code, Diagnostic, Diagnostics, SourceSpan};
 use proc_macro2::Span;
 
-use crate::inspection::{Candidate, Name};
+use crate::inspection::{Candidate, Name, is_placeholder};
 
 /// The greatest number of errors that are kept. A reader needs no more.
 const MAX_ERRORS: usize = 200;
@@ -38,6 +38,12 @@ impl<'a> Report<'a> {
     /// Returns whether names are collected.
     pub(crate) fn has_names(&self) -> bool {
         self.names.is_some()
+    }
+
+    /// Tests whether a name stands for the one that is being typed. It does only while names are collected: in other texts it is a name
+    /// like others.
+    pub(crate) fn is_placeholder(&self, name: &str) -> bool {
+        self.has_names() && is_placeholder(name)
     }
 
     /// Adds a name, if names are collected.

@@ -59,6 +59,12 @@ impl Documents {
         self.0.iter_mut().filter(|(_, open)| open.is_changed)
     }
 
+    /// Marks the documents as changed that have diagnostics in one of these files: another document has replaced them.
+    pub(super) fn mark_those_with(&mut self, files: &[String]) {
+        let has = |open: &Open| open.published.iter().any(|published| files.contains(published));
+        self.0.values_mut().filter(|open| has(open)).for_each(|open| open.is_changed = true);
+    }
+
     /// Marks every document as changed: a file that it names may have changed.
     pub(super) fn mark_all(&mut self) {
         self.0.values_mut().for_each(|open| open.is_changed = true);

@@ -1,8 +1,8 @@
 //! `fragbuf lsp`: a language server for `.fragbuf` files, on stdin and stdout.
 //!
 //! Input: messages of the Language Server Protocol 3.17. Output: answers, and diagnostics of the open documents. The analysis is
-//! [`fragbuf::analysis`]; nothing here knows the language. A message that is malformed gets an error or ends the server; none makes it
-//! panic or wait.
+//! [`fragbuf::analysis`]; nothing here depends on the grammar. A malformed message gets an error or ends the server. Messages are
+//! answered one after the other, and a panic while one is answered is an error of that request.
 
 mod answers;
 mod documents;

@@ -68,10 +68,19 @@ impl Server {
 
     /// Returns the diagnostics of the documents that have changed.
     pub(super) fn diagnostics(&mut self) -> Vec<Value> {
-        let mut messages = Vec::new();
         if self.state != State::Running {
-            return messages;
+            return Vec::new();
         }
+        let (mut messages, emptied) = self.diagnostics_of_changed();
+        // A list replaces that of the same file: other documents may still have diagnostics there.
+        self.documents.mark_those_with(&emptied);
+        messages.extend(self.diagnostics_of_changed().0);
+        messages
+    }
+
+    /// Returns the diagnostics of the documents that have changed, and the files of users that they no longer have any in.
+    fn diagnostics_of_changed(&mut self) -> (Vec<Value>, Vec<String>) {
+        let (mut messages, mut emptied) = (Vec::new(), Vec::new());
         let registry = &self.registry;
         for (uri, open) in self.documents.changed() {
             open.is_changed = false;
@@ -79,7 +88,10 @@ impl Server {
             let found = catch_unwind(AssertUnwindSafe(|| answers::diagnostics(&document, uri)));
             let Ok(mut found) = found else { continue };
             for earlier in &open.published {
-                found.entry(earlier.clone()).or_default();
+                if !found.contains_key(earlier) {
+                    emptied.push(earlier.clone());
+                    found.insert(earlier.clone(), Vec::new());
+                }
             }
             open.published = found.keys().filter(|other| *other != uri).cloned().collect();
             for (file, diagnostics) in found {
@@ -90,7 +102,7 @@ impl Server {
                 messages.push(notification("textDocument/publishDiagnostics", parameters));
             }
         }
-        messages
+        (messages, emptied)
     }
 
     fn answer(&mut self, method: &str, id: &Value, parameters: &Value) -> Value {
@@ -179,6 +191,7 @@ impl Server {
             "textDocument/didChange" => self.documents.change(parameters),
             "textDocument/didClose" => match self.documents.close(parameters) {
                 Ok(closed) => {
+                    self.documents.mark_those_with(&closed.published);
                     let own = parameters::document(parameters).ok().map(str::to_owned);
                     let files = own.into_iter().chain(closed.published);
                     let empty =

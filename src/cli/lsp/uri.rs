@@ -7,11 +7,14 @@ use std::fmt::Write as _;
 /// The scheme of the WGSL files of fragbuf, which are in the program and not in a folder.
 pub(super) const TEMPLATE: &str = "fragbuf-template";
 
-/// Returns the path of a URI `file:///…`.
+/// Returns the path of a URI `file:///…`, or `//HOST/…` of one that names a host, as Windows has them.
 pub(super) fn path(uri: &str) -> Option<String> {
     let rest = uri.strip_prefix("file://")?;
-    let rest = rest.strip_prefix("localhost").unwrap_or(rest);
-    let path = decoded(rest)?;
+    let host = rest.split('/').next().unwrap_or_default();
+    let path = match host {
+        "" | "localhost" => decoded(rest.strip_prefix(host)?)?,
+        _ => format!("//{}", decoded(rest)?),
+    };
     // `/c:/folder` on Windows.
     let drive = path.strip_prefix('/').filter(|rest| rest.as_bytes().get(1) == Some(&b':'));
     Some(drive.map_or(path.clone(), str::to_owned))
@@ -20,8 +23,10 @@ pub(super) fn path(uri: &str) -> Option<String> {
 /// Returns the URI of a path.
 pub(super) fn of_path(path: &str) -> String {
     let path = path.replace('\\', "/");
-    let start = if path.starts_with('/') { "file://" } else { "file:///" };
-    encoded(start, &path)
+    match path.strip_prefix("//") {
+        Some(rest) => encoded("file://", rest),
+        None => encoded(if path.starts_with('/') { "file://" } else { "file:///" }, &path),
+    }
 }
 
 /// Returns the URI of a template.
@@ -76,6 +81,8 @@ mod tests {
             ("file:///a/b%20c.fragbuf", Some("/a/b c.fragbuf")),
             ("file:///c%3A/a.fragbuf", Some("c:/a.fragbuf")),
             ("file:///%C3%A9", Some("/é")),
+            ("file://localhost/a", Some("/a")),
+            ("file://wsl.localhost/Ubuntu/a%20b", Some("//wsl.localhost/Ubuntu/a b")),
             ("file:///%C3", None),
             ("file:///%zz", None),
             ("untitled:Untitled-1", None),
@@ -84,6 +91,7 @@ mod tests {
         }
         assert_eq!(of_path("/a/b c"), "file:///a/b%20c");
         assert_eq!(path(&of_path("c:\\ä b")).as_deref(), Some("c:/ä b"));
+        assert_eq!(of_path("//wsl.localhost/Ubuntu/a b"), "file://wsl.localhost/Ubuntu/a%20b");
         assert_eq!(template(&of_template("storage/x.wgsl")).as_deref(), Some("storage/x.wgsl"));
     }
 }

@@ -17,6 +17,9 @@ use super::problem::Problem;
 /// Commands that take seconds, and the greatest number of them that run at the same time. Others wait.
 pub(super) static SHORT: Semaphore = Semaphore::const_new(4);
 
+/// Lists of devices, for which a page waits when it is opened.
+pub(super) static LISTS: Semaphore = Semaphore::const_new(2);
+
 /// Commands that may take minutes: checks.
 pub(super) static LONG: Semaphore = Semaphore::const_new(2);
 

@@ -90,7 +90,12 @@ impl Picture {
 
     /// Returns the histogram of the fragments of a pixel.
     pub(super) async fn predict(&self, folder: &Folder, models: &Models) -> Result<Value, Problem> {
-        json_of(&self.run("predict", Vec::new(), (folder, models)).await?)
+        let mut predicted = json_of(&self.run("predict", Vec::new(), (folder, models)).await?)?;
+        // The command names the file of a model, which is of this machine.
+        if let Some(scene) = predicted.get_mut("scene") {
+            *scene = json!(self.scene);
+        }
+        Ok(predicted)
     }
 
     /// Runs a command with the arguments that `render` and `predict` share, and with others.
@@ -106,7 +111,7 @@ impl Picture {
         arguments.extend(self.arguments(&scene)?);
         arguments.extend(others);
         let mut printed = run(&arguments, &self.text, folder, (PICTURE, &child::SHORT)).await?;
-        printed.stderr = scene.shortened(&printed.stderr);
+        printed.stderr = scene.shortened_in_json(&printed.stderr);
         Ok(printed)
     }
 
@@ -165,8 +170,10 @@ async fn run(
     folder: &Folder,
     (most, queue): (Duration, &'static Semaphore),
 ) -> Result<Printed, Problem> {
-    let folder = folder.0.clone().unwrap_or_else(std::env::temp_dir);
-    child::run(&Job { arguments, text, folder: &folder, most, queue }).await
+    // Without a folder of user files the command runs in an empty one: messages name files that are at hand.
+    let empty = tempfile::tempdir().map_err(|error| Problem::server(format!("a folder for the command: {error}")))?;
+    let folder = folder.0.as_deref().unwrap_or(empty.path());
+    child::run(&Job { arguments, text, folder, most, queue }).await
 }
 
 /// Returns the JSON that a command printed. A command without output failed, and says why on stderr.

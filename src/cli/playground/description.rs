@@ -10,7 +10,7 @@ use fragbuf_model::codes;
 use super::problem::Problem;
 
 /// The name of the description in messages.
-pub(super) const NAME: &str = "description.fragbuf";
+pub(in crate::cli) const NAME: &str = "description.fragbuf";
 
 /// The folder that descriptions read user files from.
 #[derive(Clone, Debug)]
@@ -36,6 +36,8 @@ impl Folder {
         let file = self.file();
         let loaded = match self.refused(text, &file) {
             Some(errors) => Err(errors),
+            // Messages of `load` name files that are at hand, and without a folder none is.
+            None if self.0.is_none() => parse(text, &file).check(registry),
             None => load::variant(&Description::Text { file, text: text.to_owned() }, &[], registry),
         };
         loaded.map_err(|errors| Problem::input(sentence(&errors)))

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
-use super::description::{Folder, sentence};
+use super::description::{Folder, NAME, sentence};
 use super::problem::Problem;
 use crate::cli::targets::names;
 
@@ -92,7 +92,7 @@ impl Download {
             return Err(Problem::input("none of these targets supports the description: choose another target"));
         }
         let manifest = format!("{:#}\n", manifest(&generation, 0));
-        let whole = [("manifest.json", manifest.as_bytes()), ("description.fragbuf", self.text.as_bytes())];
+        let whole = [("manifest.json", manifest.as_bytes()), (NAME, self.text.as_bytes())];
         let files = generation.files.iter().map(|file| (file.path.as_str(), file.bytes.as_slice()));
         archive(whole.into_iter().chain(files)).map_err(|error| Problem::server(format!("the archive: {error}")))
     }

@@ -63,5 +63,8 @@ fn packed(scene: &Scene, plan: &Plan, memory: Budget) -> Result<Vec<u8>, Problem
     bytes.resize(bytes.len().next_multiple_of(4), 0);
     let normals = scene.objects.iter().flat_map(|object| object.normals.iter().flatten().map(|value| value.to_bits()));
     let words = geometry.vertices.iter().copied().chain(normals).chain(geometry.indices.iter().copied());
-    Ok([length.to_le_bytes().to_vec(), bytes, words.flat_map(u32::to_le_bytes).collect()].concat())
+    let mut packed = length.to_le_bytes().to_vec();
+    packed.append(&mut bytes);
+    words.for_each(|word| packed.extend(word.to_le_bytes()));
+    Ok(packed)
 }

@@ -21,6 +21,7 @@ mod server;
 mod start;
 
 pub(super) use assets::{HOST, asset};
+pub(super) use description::NAME as DESCRIPTION;
 pub(super) use geometry::triangles;
 pub(super) use start::example;
 

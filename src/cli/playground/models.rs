@@ -59,6 +59,12 @@ impl ModelFile {
     pub(super) fn shortened(&self, message: &str) -> String {
         message.replace(&self.path(), &self.file)
     }
+
+    /// Returns messages in JSON with the name of the file in place of its path, which may have characters that JSON escapes.
+    pub(super) fn shortened_in_json(&self, messages: &str) -> String {
+        let escaped = Value::from(self.path()).to_string();
+        messages.replace(escaped.trim_matches('"'), &self.file)
+    }
 }
 
 impl Models {

@@ -45,8 +45,16 @@ impl RequestedScene {
         scene.map_err(|error| Problem::input(self.shortened(&error.to_string())))
     }
 
+    /// Returns messages in JSON with the name of a model in place of its path.
+    pub(super) fn shortened_in_json(&self, messages: &str) -> String {
+        match self {
+            RequestedScene::Generated(_) => messages.to_owned(),
+            RequestedScene::Model(file) => file.shortened_in_json(messages),
+        }
+    }
+
     /// Returns a message with the name of a model in place of its path, which is of this machine.
-    pub(super) fn shortened(&self, message: &str) -> String {
+    fn shortened(&self, message: &str) -> String {
         match self {
             RequestedScene::Generated(_) => message.to_owned(),
             RequestedScene::Model(file) => file.shortened(message),

@@ -1,7 +1,7 @@
 //! The server: routes, bounds and panics.
 //!
-//! A request has at most [`MOST_BYTES`], and a model [`models::MOST_BYTES`]. What is answered in this process runs on a thread of its own for at most [`MOST_TIME`]; if it
-//! panics, this request alone fails.
+//! A request has at most [`MOST_BYTES`], and a model [`models::MOST_BYTES`]. What is answered in this process runs on a thread of its own, and is an error
+//! after [`MOST_TIME`]; if it panics, this request alone fails.
 
 use std::net::{SocketAddr, TcpListener};
 use std::path::PathBuf;
@@ -18,6 +18,7 @@ use axum::{Json, Router};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
+use tokio::sync::Semaphore;
 use tokio::time::timeout;
 
 use super::analyse::Analyse;
@@ -35,6 +36,9 @@ const MOST_BYTES: usize = 1 << 20;
 
 /// The time of an answer in this process.
 const MOST_TIME: Duration = Duration::from_secs(20);
+
+/// The answers that this process computes at the same time, which bounds its memory. Others wait.
+static HERE: Semaphore = Semaphore::const_new(8);
 
 /// Answers until the process ends.
 pub(super) fn run(listener: TcpListener, address: SocketAddr, folder: Option<PathBuf>) -> std::io::Result<()> {
@@ -180,9 +184,18 @@ fn parsed<T: DeserializeOwned>(body: &[u8]) -> Result<T, Problem> {
     serde_json::from_slice(body).map_err(|error| Problem::request(format!("the request: {error}")))
 }
 
-/// Runs `answer` on a thread that may block.
+/// Runs `answer` on a thread that may block, when it is its turn.
 async fn here<T: Send + 'static>(answer: impl FnOnce() -> Result<T, Problem> + Send + 'static) -> Result<T, Problem> {
-    match timeout(MOST_TIME, tokio::task::spawn_blocking(answer)).await {
+    // The thread of an answer that is too late goes on, and holds its turn until it ends.
+    let work = async {
+        let turn = HERE.acquire().await;
+        let answer = move || {
+            let _turn = turn;
+            answer()
+        };
+        tokio::task::spawn_blocking(answer).await
+    };
+    match timeout(MOST_TIME, work).await {
         Ok(Ok(result)) => result,
         Ok(Err(_)) => Err(Problem::server("a defect of fragbuf ended this request: report it with the description")),
         Err(_) => Err(Problem::input(format!("this took longer than {} seconds: ask for less", MOST_TIME.as_secs()))),

@@ -30,7 +30,11 @@ const EXAMPLES: &[(&str, &str)] = &[
 
 /// Returns what the page offers.
 pub(super) async fn answer(models: &Models) -> Result<Value, Problem> {
-    let devices = devices().await?;
+    // Without their list, the page draws by WebGPU or by the device that the server selects.
+    let (devices, devices_problem) = match devices().await {
+        Ok(devices) => (devices, None),
+        Err(problem) => (Vec::new(), Some(problem.message)),
+    };
     let registry = Registry::builtin();
     let technique = |technique: &vocabulary::Technique| {
         json!({
@@ -58,6 +62,7 @@ pub(super) async fn answer(models: &Models) -> Result<Value, Problem> {
         "scenes": scenes.collect::<Vec<_>>(),
         "models": models.list(),
         "devices": devices,
+        "devices_problem": devices_problem,
         "targets": TARGETS.iter().map(|target| json!({ "name": target.name, "summary": target.summary })).collect::<Vec<_>>(),
     }))
 }
@@ -66,7 +71,7 @@ pub(super) async fn answer(models: &Models) -> Result<Value, Problem> {
 async fn devices() -> Result<Vec<String>, Problem> {
     let arguments = ["devices".to_owned(), "--json".to_owned()];
     let folder = std::env::temp_dir();
-    let job = Job { arguments: &arguments, text: "", folder: &folder, most: DEVICES, queue: &child::SHORT };
+    let job = Job { arguments: &arguments, text: "", folder: &folder, most: DEVICES, queue: &child::LISTS };
     let printed = child::run(&job).await?;
     let rows: Vec<Value> = serde_json::from_slice(&printed.stdout).unwrap_or_default();
     Ok(rows.iter().filter_map(|row| Some(row["name"].as_str()?.to_owned())).collect())

@@ -24,6 +24,7 @@ const SHARED: &[&str] = &[
     "code_view.mjs",
     "controls.mjs",
     "dom.mjs",
+    "file_tabs.mjs",
     "geometry.mjs",
     "language.mjs",
     "markdown.mjs",

@@ -12,7 +12,9 @@ use fragbuf::{
 use fragbuf_model::{Diagnostics, Variant};
 use serde_json::{Map, Value, json};
 
+use super::merged;
 use super::pieces::Pieces;
+use crate::cli::playground::DESCRIPTION;
 
 /// The target of the passes.
 const TARGET: &str = "wgsl";
@@ -23,9 +25,6 @@ const OVERFLOW: &str = "overflow";
 
 /// The largest k of variants. The player draws with any k up to it.
 const CAPACITIES: [u32; 4] = [4, 8, 16, 32];
-
-/// The name of the descriptions in messages.
-const NAME: &str = "description.fragbuf";
 
 /// A combination of choices.
 struct Choices<'a> {
@@ -121,15 +120,12 @@ impl Table<'_> {
     fn variant(&mut self, choices: &Choices<'_>) -> Value {
         let Choices { capacity, sort, overflow } = choices;
         let text = self.text(choices);
-        let mut variant = json!({ "capacity": capacity, "sort": sort, "overflow": overflow });
+        let variant = json!({ "capacity": capacity, "sort": sort, "overflow": overflow });
         let found = match generated(&text, self.registry) {
             Ok(generation) => self.passes(text, &generation),
             Err(reason) => json!({ "reason": self.reason(reason) }),
         };
-        if let (Value::Object(variant), Value::Object(found)) = (&mut variant, found) {
-            variant.extend(found);
-        }
-        variant
+        merged(variant, found)
     }
 
     /// Returns the description with the choices that differ from those of the technique.
@@ -184,7 +180,7 @@ fn layout(variant: &Variant) -> String {
 
 /// Generates the passes of a description, or returns why the player cannot draw it.
 fn generated(text: &str, registry: &Registry) -> Result<Generation, String> {
-    let description = Description::Text { file: NAME.to_owned(), text: text.to_owned() };
+    let description = Description::Text { file: DESCRIPTION.to_owned(), text: text.to_owned() };
     let variant = load::variant(&description, &[], registry).map_err(|errors| first(&errors))?;
     let target = target(TARGET).ok_or_else(|| format!("there is no target `{TARGET}`"))?;
     let targets: [&'static Target; 1] = [target];

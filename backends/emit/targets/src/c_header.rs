@@ -11,7 +11,7 @@ mod tables;
 
 use std::fmt::Write;
 
-use fragbuf_codegen::{GENERATOR, Plan, PlanValue, Quantity, SymbolId};
+use fragbuf_codegen::{Form, GENERATOR, Plan, PlanValue, Quantity, SymbolId};
 
 use crate::OpenGlBindings;
 use crate::generate::{Generation, PlanForTargets};
@@ -34,7 +34,8 @@ pub fn c_header(generation: &Generation, name: &str, source: &str, group: u32) -
     );
     for (index, planned) in generation.plans.iter().enumerate() {
         let base = if index == 0 { stem.clone() } else { format!("{stem}_plan_{index}") };
-        let mut writer = Writer { text: &mut text, names: &mut names, base, plan: &planned.plan, group };
+        let mut writer =
+            Writer { text: &mut text, names: &mut names, base, plan: &planned.plan, group, form: generation.form };
         writer.plan(planned, generation);
     }
     let _ = write!(text, "\n#endif\n");
@@ -63,6 +64,7 @@ struct Writer<'a> {
     base: String,
     plan: &'a Plan,
     group: u32,
+    form: Form,
 }
 
 impl Writer<'_> {

@@ -23,9 +23,9 @@ pub const SCHEMA: &str = "fragbuf-manifest/4";
 pub const JSON_SCHEMA: &str = include_str!("../manifest.schema.json");
 
 /// The bindings of the uniform blocks; the first resource follows.
-const FRAME: u32 = 0;
-const UNIFORMS: u32 = 1;
-const CAMERA: u32 = 2;
+pub(crate) const FRAME: u32 = 0;
+pub(crate) const UNIFORMS: u32 = 1;
+pub(crate) const CAMERA: u32 = 2;
 
 /// A plan, and what else its part of a manifest depends on.
 struct Context<'a> {

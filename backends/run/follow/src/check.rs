@@ -1,57 +1,63 @@
-//! Checks what the types of a plan cannot express: loops are nested, and every name is that of something.
+//! Checks what the types of a plan cannot express: loops are nested, every name is that of something, and every
+//! number is in its range. A manifest may be written by anybody.
 
-use std::collections::BTreeSet;
+mod blocks;
+mod passes;
+mod symbols;
+
+use std::collections::BTreeMap;
 
 use crate::Error;
-use crate::manifest::{Action, Exchange, Field, Objects, Plan, Until};
+use crate::manifest::{Action, Exchange, Kind, Objects, Pass, Plan, Until};
 
 /// Returns the first mistake of a plan.
 pub fn check(plan: &Plan) -> Result<(), Error> {
-    let failed = |at: usize, problem: String| Err(Error(format!("manifest: step {at}: {problem}")));
+    let failed = |problem: String| Error(format!("manifest: {problem}: generate it again"));
+    steps(plan).map_err(failed)?;
+    exchanges(plan, &plan.exchanges).map_err(|problem| failed(format!("exchanges: {problem}")))?;
+    blocks::check(plan).map_err(failed)?;
+    symbols::check_defaults(plan).map_err(failed)?;
+    symbols::check_counters(plan).map_err(failed)
+}
+
+fn steps(plan: &Plan) -> Result<(), String> {
+    let failed = |at: usize, problem: String| Err(format!("step {at}: {problem}"));
     let mut loops = Vec::new();
+    let draws = draws(plan);
     for (at, step) in plan.steps.iter().enumerate() {
         match &step.action {
             Action::Loop { end, .. } => loops.push((at, *end)),
             Action::LoopEnd { begin, .. } if loops.pop() != Some((*begin, at)) => {
                 return failed(at, format!("it does not end the loop that begins at step {begin}"));
             }
+            Action::Pass(pass) => passes::check(pass).or_else(|problem| failed(at, problem))?,
             _ => {}
         }
         if let Some(name) = resources(&step.action).into_iter().find(|name| plan.resource(name).is_none()) {
             return failed(at, format!("there is no resource `{name}`"));
         }
-        let passes: BTreeSet<&str> = plan.passes().map(|(_, pass)| pass.name.as_str()).collect();
-        if let Some(name) = queried(&step.action).filter(|name| !passes.contains(name)) {
-            return failed(at, format!("there is no pass `{name}`"));
+        match queried(&step.action).map(|name| (name, draws.get(name))) {
+            Some((name, None)) => return failed(at, format!("there is no pass `{name}`")),
+            Some((name, Some(false))) => {
+                return failed(at, format!("the pass `{name}` computes, so it has no samples"));
+            }
+            _ => {}
         }
         exchanges(plan, &step.exchanged).or_else(|problem| failed(at, problem))?;
     }
-    blocks(plan)?;
-    if let Some((begin, end)) = loops.pop() {
-        return failed(begin, format!("the loop does not end at step {end}"));
+    match loops.pop() {
+        Some((begin, end)) => failed(begin, format!("the loop does not end at step {end}")),
+        None => Ok(()),
     }
-    exchanges(plan, &plan.exchanges).map_err(|problem| Error(format!("manifest: exchanges: {problem}")))
 }
 
-/// The greatest size of a uniform block in bytes, which every device allows: `maxUniformBufferBindingSize` of WebGPU.
-const MOST_BYTES: usize = 65_536;
-
-/// Checks that every field is inside of its block.
-fn blocks(plan: &Plan) -> Result<(), Error> {
-    for block in &plan.uniform_blocks {
-        if block.bytes > MOST_BYTES {
-            let name = &block.name;
-            return Err(Error(format!(
-                "manifest: the uniform block `{name}` has {} bytes, more than {MOST_BYTES}",
-                block.bytes
-            )));
-        }
-        let is_outside = |field: &&Field| field.offset.checked_add(4).is_none_or(|end| end > block.bytes);
-        if let Some(field) = block.fields.iter().find(is_outside) {
-            return Err(Error(format!("manifest: `{}` is outside of the uniform block `{}`", field.name, block.name)));
-        }
+/// Returns the names of passes, each with whether all passes of the name draw.
+fn draws(plan: &Plan) -> BTreeMap<&str, bool> {
+    let mut draws = BTreeMap::new();
+    for (_, Pass { name, kind, .. }) in plan.passes() {
+        *draws.entry(name.as_str()).or_insert(true) &= *kind != Kind::Compute;
     }
-    Ok(())
+    draws
 }
 
 /// Checks that pairs are those of the plan.

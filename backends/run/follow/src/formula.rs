@@ -10,6 +10,15 @@ pub fn evaluate(formula: &str, symbol: &dyn Fn(&str) -> Option<u64>) -> Result<u
     value.ok_or_else(|| Error(format!("the formula `{formula}` has no value")))
 }
 
+/// Returns the names in a formula, those of functions as well.
+pub(crate) fn names(formula: &str) -> impl Iterator<Item = &str> {
+    formula.split(|c: char| !is_of_name(c)).filter(|name| !name.is_empty())
+}
+
+fn is_of_name(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
+}
+
 /// The greatest depth of parentheses. A manifest from anywhere must not exhaust the stack.
 const DEEPEST: u32 = 64;
 
@@ -86,7 +95,7 @@ impl<'a> Parser<'a> {
     /// Takes a name or a number.
     fn word(&mut self) -> &'a str {
         let text = self.rest.trim_start();
-        let end = text.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(text.len());
+        let end = text.find(|c| !is_of_name(c)).unwrap_or(text.len());
         self.rest = &text[end..];
         &text[..end]
     }

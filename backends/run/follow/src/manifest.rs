@@ -1,12 +1,14 @@
 //! The part of `manifest.json` that a host needs, as types. The guide's chapter on the manifest defines every field.
 //!
 //! Input: the text of a manifest, a target. Output: the files and the plan of the target. What is malformed is an
-//! error here, so that no reader of a plan meets a loop without an end or a name without a resource.
+//! error here, so that no reader of a plan meets a loop without an end, a name without a resource, or a number out of
+//! its range.
 
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
+use crate::uniforms::CAMERA_BYTES;
 use crate::{Error, check};
 
 pub use crate::pass::{Binding, BindingKind, Blend, Depth, Kind, Objects, Pass, Samples, State, Stencil, Target};
@@ -320,9 +322,9 @@ impl Plan {
 }
 
 impl Field {
-    /// The number of 32-bit components.
-    pub fn components(&self) -> usize {
-        components(&self.kind)
+    /// The bytes that a host writes.
+    pub fn bytes(&self) -> usize {
+        if self.kind == "mat4x4<f32>" { CAMERA_BYTES } else { 4 * components(&self.kind) }
     }
 }
 

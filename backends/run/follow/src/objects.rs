@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::Error;
+
 /// The corners of a box as triangles: bit 0 selects x, bit 1 y and bit 2 z of the greatest corner.
 pub const BOX: [usize; 36] =
     [0, 1, 2, 2, 1, 3, 4, 6, 5, 5, 6, 7, 0, 4, 1, 1, 4, 5, 2, 3, 6, 6, 3, 7, 0, 2, 4, 4, 2, 6, 1, 5, 3, 3, 5, 7];
@@ -35,8 +37,26 @@ pub struct Image {
     pub pixels: Vec<[f32; 4]>,
     /// The counters of the frame, by name.
     pub counters: BTreeMap<String, u64>,
-    /// The sum of the counters of lost fragments. If it is not 0, the image is or may be wrong.
+    /// The sum of the counters of losses, `is_loss` in the manifest. If it is not 0, the image is or may be wrong:
+    /// fragments are missing, were composited in another order, or cover pixels partly where whole pixels are required.
     pub lost: u64,
+}
+
+impl Image {
+    /// Returns the image, or an error if it is or may be wrong.
+    pub fn without_losses(self) -> Result<Self, Error> {
+        if self.lost == 0 {
+            return Ok(self);
+        }
+        let counted = self.counters.iter().filter(|(_, count)| **count > 0);
+        let counters: Vec<String> = counted.map(|(name, count)| format!("{name} {count}")).collect();
+        Err(Error(format!(
+            "the image is or may be wrong: its counters of losses add up to {} ({}). The guide's chapter `counters` \
+             explains what to change",
+            self.lost,
+            counters.join(", ")
+        )))
+    }
 }
 
 impl Object {

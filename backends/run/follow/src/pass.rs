@@ -160,4 +160,9 @@ impl Pass {
     pub fn bindings(&self, target: &str) -> &[Binding] {
         self.bindings_of.get(target).unwrap_or(&self.bindings)
     }
+
+    /// What the text of every target declares.
+    pub(crate) fn binding_lists(&self) -> impl Iterator<Item = &[Binding]> {
+        std::iter::once(&self.bindings).chain(self.bindings_of.values()).map(Vec::as_slice)
+    }
 }

@@ -5,6 +5,9 @@ use std::collections::BTreeSet;
 use crate::manifest::{Block, Field, Plan};
 use crate::{Call, Error};
 
+/// The bytes of the matrix in the block `camera`.
+pub(crate) const CAMERA_BYTES: usize = 64;
+
 /// The block `uniforms` of a plan; empty if it has none.
 pub struct Uniforms {
     fields: Vec<Field>,
@@ -34,7 +37,7 @@ impl Uniforms {
             let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
             return Err(Error(format!("the description has no uniform `{name}`: it has {known}")));
         };
-        let wanted = 4 * field.components();
+        let wanted = field.bytes();
         let end = field.offset.saturating_add(bytes.len());
         match self.bytes.get_mut(field.offset..end) {
             Some(place) if bytes.len() == wanted => place.copy_from_slice(bytes),

@@ -91,16 +91,16 @@ impl Values {
 
     /// Returns the value of a formula if some symbols had other values.
     pub(crate) fn value_with(&self, formula: &str, assumed: &[(&str, u64)]) -> Result<u64, Error> {
+        let lookup = Lookup { values: self, assumed, defaults: RefCell::default() };
         let missing = RefCell::new(None);
-        let lookup = |name: &str| {
-            let value = assumed.iter().find(|(known, _)| *known == name).map(|(_, value)| *value);
-            let value = value.or_else(|| self.symbol(name, assumed));
+        let symbol = |name: &str| {
+            let value = lookup.symbol(name);
             if value.is_none() {
                 *missing.borrow_mut() = Some(name.to_owned());
             }
             value
         };
-        evaluate(formula, &lookup).map_err(|error| match missing.take() {
+        evaluate(formula, &symbol).map_err(|error| match missing.take() {
             Some(name) => Error(format!("the symbol `{name}` has no value: set it before the frame")),
             None => error,
         })
@@ -120,27 +120,52 @@ impl Values {
     }
 
     fn bytes_with(&self, resource: &Resource, assumed: &[(&str, u64)]) -> Result<u64, Error> {
-        let is_early = self.used_before_k.contains(&resource.name) && !self.set.contains_key("k");
+        let is_early = self.used_before_k.contains(&resource.name);
         let mut assumed = assumed.to_vec();
         if is_early && self.decisions.contains("k") {
             assumed.insert(0, ("k", self.value("capacity", 0)?));
         }
         self.value_with(&resource.bytes, &assumed)
     }
+}
 
-    fn symbol(&self, name: &str, assumed: &[(&str, u64)]) -> Option<u64> {
-        if let Some(value) = self.decided.get(name).or(self.set.get(name)).or(self.plan.constants.get(name)) {
+/// The values of symbols for one formula.
+struct Lookup<'a> {
+    values: &'a Values,
+    /// Symbols with other values.
+    assumed: &'a [(&'a str, u64)],
+    /// The defaults that have been evaluated, by symbol: each is evaluated once, however often a formula names it.
+    defaults: RefCell<BTreeMap<&'a str, Option<u64>>>,
+}
+
+impl<'a> Lookup<'a> {
+    fn symbol(&self, name: &str) -> Option<u64> {
+        let Values { plan, set, decided, decisions, .. } = self.values;
+        if let Some((_, value)) = self.assumed.iter().find(|(known, _)| *known == name) {
             return Some(*value);
         }
-        let symbol = self.plan.symbols.iter().find(|symbol| symbol.name == name)?;
+        if let Some(value) = decided.get(name).or(set.get(name)).or(plan.constants.get(name)) {
+            return Some(*value);
+        }
+        let symbol = plan.symbols.iter().find(|symbol| symbol.name == name)?;
         match (&symbol.default, symbol.value) {
             (_, Some(value)) => Some(value),
             // A host step of this frame has yet to set it.
-            _ if self.decisions.contains(name) => None,
-            (Some(default), _) => self.value_with(default, assumed).ok(),
+            _ if decisions.contains(name) => None,
+            (Some(default), _) => self.default(&symbol.name, default),
             // `first_row` and `iteration` outside of slices and loops.
             (None, None) => (symbol.when == "iteration").then_some(0),
         }
+    }
+
+    /// Returns the value of a default. `check` has limited how far defaults depend on each other.
+    fn default(&self, name: &'a str, formula: &str) -> Option<u64> {
+        let known = self.defaults.borrow().get(name).copied();
+        known.unwrap_or_else(|| {
+            let value = evaluate(formula, &|name| self.symbol(name)).ok();
+            self.defaults.borrow_mut().insert(name, value);
+            value
+        })
     }
 }
 

@@ -8,6 +8,12 @@ use crate::check::queried;
 use crate::manifest::{Action, Exchange, Objects, Pass, Plan, Read, Step, Until};
 use crate::{Error, Scene, Values, functions};
 
+/// The most iterations of a loop. A manifest from anywhere must not run for ever.
+const MOST_ITERATIONS: u64 = 1 << 20;
+
+/// The most iterations of loops inside each other together.
+const MOST_NESTED_ITERATIONS: u64 = 1 << 24;
+
 /// What a graphics API does. Names of resources are those whose memory is meant: exchanges have been applied.
 pub trait Device {
     /// Sets every word of a buffer to `value`, or every texel of a texture to `texel`.
@@ -134,6 +140,7 @@ impl<'a> Frame<'a> {
                 if most == 0 {
                     return Ok(Some(end + 1));
                 }
+                self.check_iterations(at, most)?;
                 self.loops.push([0, most]);
             }
             Action::LoopEnd { begin, until } => {
@@ -147,6 +154,20 @@ impl<'a> Frame<'a> {
             Action::Host { function, reads, sets } => self.host_step(function, reads, sets, &names)?,
         }
         Ok(None)
+    }
+
+    /// Checks the iterations of a loop that begins at a step.
+    fn check_iterations(&self, step: usize, most: u64) -> Result<(), Error> {
+        let nested = self.loops.iter().fold(most, |product, [_, most]| product.saturating_mul(*most));
+        for (iterations, allowed) in [(most, MOST_ITERATIONS), (nested, MOST_NESTED_ITERATIONS)] {
+            if iterations > allowed {
+                return Err(Error(format!(
+                    "the loop at step {step} has up to {iterations} iterations, more than {allowed}: set lesser symbols, \
+                     or generate the manifest with lesser options"
+                )));
+            }
+        }
+        Ok(())
     }
 
     fn iteration(&self) -> u64 {

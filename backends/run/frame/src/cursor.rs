@@ -117,7 +117,7 @@ impl Cursor {
         let Some((wait, purpose)) = self.requested.take() else { return Ok(()) };
         match purpose {
             Purpose::Objects(pass) => {
-                let dropped = self.dropped.entry(query(plan, pass)).or_default();
+                let dropped = self.dropped.entry(first_of_query(plan, pass)).or_default();
                 dropped.resize(dropped.len().max(words.len()), false);
                 dropped.iter_mut().zip(words).for_each(|(dropped, word)| *dropped |= *word == 0);
             }
@@ -154,7 +154,7 @@ impl Cursor {
 
     /// Whether the query `pass` has dropped an object in this frame. A dropped object stays dropped until the frame ends.
     pub fn is_dropped(&self, plan: &Plan, pass: PassId, object: usize) -> bool {
-        self.dropped.get(&query(plan, pass)).and_then(|dropped| dropped.get(object)).copied().unwrap_or(false)
+        self.dropped.get(&first_of_query(plan, pass)).and_then(|dropped| dropped.get(object)).copied().unwrap_or(false)
     }
 
     /// Returns a report on each finished loop that has an end condition.
@@ -178,7 +178,7 @@ impl Cursor {
         if plan.passes[pass.0].objects == Objects::Boxes {
             match (self.conditions, self.readbacks) {
                 (Conditions::OnDevice, _) => {
-                    self.update = Some(Condition::Objects { pass: query(plan, pass), around: conditional });
+                    self.update = Some(Condition::Objects { pass: first_of_query(plan, pass), around: conditional });
                 }
                 (Conditions::OnHost, Readbacks::Disabled) => return None,
                 (Conditions::OnHost, _) => self.requested = Some((HostWait::Objects(pass), Purpose::Objects(pass))),
@@ -283,8 +283,8 @@ impl Cursor {
     }
 }
 
-/// Returns the first pass of this name: a frame may contain several passes of one query.
-fn query(plan: &Plan, pass: PassId) -> PassId {
+/// Returns the first pass with the name of this pass: a frame may contain several passes of one query.
+pub fn first_of_query(plan: &Plan, pass: PassId) -> PassId {
     plan.pass_id(&plan.passes[pass.0].name).unwrap_or(pass)
 }
 

@@ -27,7 +27,7 @@ pub use boxes::{
 };
 pub use condition::{Condition, ConditionWord, Conditions, LOOP_WORDS, check_conditions, loop_reports, object_queries};
 pub use counters::{COUNTERS_RESOURCE, Counter, Counters, OUT_OF_ORDER, PARTIAL_COVERAGE, POOL_EXHAUSTED};
-pub use cursor::Cursor;
+pub use cursor::{Cursor, first_of_query};
 pub use error::{Error, MemoryNeed};
 pub use host_step::decide;
 pub use lag::{Decisions, LaggedValues};

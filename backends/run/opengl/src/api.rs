@@ -43,7 +43,7 @@ pub(crate) struct Desktop {
     pub clear_texture: ClearTexture,
 }
 
-/// A buffer is filled by copies of at most this many words.
+/// OpenGL ES fills a buffer from an upload of at most this many words. Each copy then doubles what is filled.
 const CHUNK: u64 = 1 << 16;
 
 impl Api {

@@ -70,7 +70,17 @@ impl Context {
         let context = egl.create_context(display, config, None, &api.egl_attributes());
         let [major, minor] = api.version();
         let context = context.map_err(|error| failed(&format!("a context of version {major}.{minor}"), &error))?;
-        egl.make_current(display, None, None, Some(context)).map_err(|error| failed("eglMakeCurrent", &error))?;
+        let current = egl.make_current(display, None, None, Some(context));
+        let current = current.map_err(|error| failed("eglMakeCurrent", &error));
+        let opened = current.and_then(|()| Context::load(egl, api, display, context));
+        if opened.is_err() {
+            close(egl, api, display, context);
+        }
+        opened
+    }
+
+    /// Loads the functions of a context that is current.
+    fn load(egl: &'static Egl, api: Api, display: egl::Display, context: egl::Context) -> Result<Self, Error> {
         let function = |name: &str| {
             // Functions of extensions that a later version contains.
             let function = egl.get_proc_address(name).or_else(|| egl.get_proc_address(&format!("{name}EXT")));
@@ -107,6 +117,16 @@ fn library() -> Result<&'static Egl, &'static String> {
     // SAFETY: the library is the system's EGL, whose initialisers may run.
     let load = || unsafe { Egl::load_required() }.map_err(|error| error.to_string());
     LIBRARY.get_or_init(load).as_ref()
+}
+
+/// Releases and destroys a context. The caller holds [`CHANGING`].
+fn close(egl: &Egl, api: Api, display: egl::Display, context: egl::Context) {
+    // A context that cannot be released is lost anyway. One that was opened later on this thread stays current.
+    let _ = egl.bind_api(api.egl_api());
+    if egl.get_current_context() == Some(context) {
+        let _ = egl.make_current(display, None, None, None);
+    }
+    let _ = egl.destroy_context(display, context);
 }
 
 fn changing() -> MutexGuard<'static, ()> {
@@ -161,11 +181,6 @@ impl Context {
 impl Drop for Context {
     fn drop(&mut self) {
         let _changing = changing();
-        // A context that cannot be released is lost anyway. One that was opened later on this thread stays current.
-        let _ = self.egl.bind_api(self.api.egl_api());
-        if self.egl.get_current_context() == Some(self.context) {
-            let _ = self.egl.make_current(self.display, None, None, None);
-        }
-        let _ = self.egl.destroy_context(self.display, self.context);
+        close(self.egl, self.api, self.display, self.context);
     }
 }

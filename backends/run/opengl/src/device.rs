@@ -10,7 +10,7 @@ use glow::HasContext as _;
 
 use crate::memory::Memory;
 use crate::timing::finished_at;
-use crate::{Context, Error};
+use crate::{Context, Error, limits};
 
 /// The device of one plan and one size of the frame.
 pub(crate) struct Device<'c> {
@@ -32,6 +32,8 @@ pub(crate) struct Device<'c> {
     pub converts_z: bool,
     /// The queries of the latest run of each pass whose samples are counted.
     pub queries: BTreeMap<String, Vec<glow::Query>>,
+    /// The greatest numbers of workgroups along x, y and z.
+    pub most_groups: [u32; 3],
     /// The time of each pass of the frame, if it is measured.
     pub pass_times: Option<Vec<(String, Duration)>>,
 }
@@ -58,6 +60,7 @@ impl<'c> Device<'c> {
             objects: Vec::new(),
             converts_z: false,
             queries: BTreeMap::new(),
+            most_groups: limits::most_groups(context),
             pass_times: None,
             plan,
         })

@@ -15,11 +15,9 @@ impl Device<'_> {
     /// Runs a pass that computes.
     pub fn dispatch(&self, pass: &Pass, call: &Call<'_>) -> Result<(), Error> {
         self.bind(pass, call)?;
-        let groups: Vec<u32> =
-            pass.groups.iter().map(|groups| Ok(call.value(groups)? as u32)).collect::<Result<_, Error>>()?;
-        let count = |index: usize| groups.get(index).copied().unwrap_or(1);
+        let [x, y, z] = call.groups(pass, self.most_groups)?;
         // SAFETY: the context is current.
-        unsafe { self.context.gl.dispatch_compute(count(0), count(1), count(2)) };
+        unsafe { self.context.gl.dispatch_compute(x, y, z) };
         Ok(())
     }
 

@@ -64,6 +64,7 @@ impl<'c> Host<'c> {
     ) -> Result<Self, Error> {
         context.require(plan.extensions(context.api.target()))?;
         context.require(&context.api.extension_of_output().map(str::to_owned).into_iter().collect::<Vec<_>>())?;
+        limits::check_uses(&plan)?;
         let plan = Arc::new(plan);
         let values = Values::new(plan.clone(), size);
         limits::check(context, &plan.limits, &|formula| values.value(formula, 0))?;

@@ -1,8 +1,9 @@
-//! Compares what a plan needs with what the driver offers.
+//! Compares what a plan needs with what the driver and this host offer.
 //!
-//! Input: the `limits` of a plan, by their names in OpenGL. Output: an error that names every limit that the driver does not meet.
+//! Input: a plan with its `limits`, by their names in OpenGL. Output: an error that names every limit that the driver
+//! does not meet, or what the host does not support.
 
-use fragbuf_follow::manifest::Limit;
+use fragbuf_follow::manifest::{Limit, Plan};
 use glow::HasContext as _;
 use serde_json::Value;
 
@@ -46,7 +47,8 @@ pub fn check(context: &Context, limits: &[Limit], value: &dyn Fn(&str) -> Result
     for limit in limits {
         let Some(name) = &limit.opengl else { continue };
         let needed = match &limit.needed {
-            // What depends on a symbol that a step of the frame sets is checked when memory is allocated.
+            // What depends on a symbol that has no value yet is checked later: sizes of buffers when they are created,
+            // workgroups when they are dispatched.
             Value::String(formula) => value(formula).unwrap_or(0),
             number => number.as_u64().unwrap_or(0),
         };
@@ -58,6 +60,25 @@ pub fn check(context: &Context, limits: &[Limit], value: &dyn Fn(&str) -> Result
         }
     }
     if unmet.is_empty() { Ok(()) } else { Err(Error(format!("{}: {}", context.name, unmet.join("; ")))) }
+}
+
+/// Checks that no pass takes its arguments from a buffer: this host draws and dispatches with numbers of its own.
+pub fn check_uses(plan: &Plan) -> Result<(), Error> {
+    match plan.passes().find(|(_, pass)| pass.uses.values().any(|access| access == "indirect")) {
+        None => Ok(()),
+        Some((_, pass)) => Err(Error(format!(
+            "the pass `{}` has arguments in a buffer (`indirect`), which this host does not support: use the host for \
+             Vulkan",
+            pass.name
+        ))),
+    }
+}
+
+/// Returns the greatest numbers of workgroups along x, y and z.
+pub fn most_groups(context: &Context) -> [u32; 3] {
+    // SAFETY: the context is current.
+    let most = |axis| unsafe { context.gl.get_parameter_indexed_i32(glow::MAX_COMPUTE_WORK_GROUP_COUNT, axis) };
+    [0, 1, 2].map(|axis| most(axis).max(0) as u32)
 }
 
 /// Returns the value of a limit on this driver. One limit of several dimensions has a name per dimension in WebGPU.

@@ -131,6 +131,28 @@ fn damaged_manifests_are_errors() {
         });
         assert!(outside.contains("is outside of the uniform block"), "{outside}");
     }
+    let indirect = error(&context, &generation, &|manifest| {
+        let steps = manifest["steps"].as_array_mut().unwrap();
+        let pass = steps.iter_mut().find(|step| step["do"] == "pass").unwrap();
+        pass["uses"]["counters"] = json!("indirect");
+    });
+    assert!(
+        indirect.contains("has arguments in a buffer (`indirect`), which this host does not support"),
+        "{indirect}"
+    );
+}
+
+/// 2^32 workgroups are not 0.
+#[test]
+fn workgroups_beyond_the_driver_are_errors() {
+    let (context, generation) = (context(Api::OpenGl), generation(Api::OpenGl, Form::Program, "ab_sb"));
+    let mut manifest = manifest(&generation, 0);
+    let steps = manifest["steps"].as_array_mut().unwrap();
+    steps.iter_mut().find(|step| step["kind"] == "compute").unwrap()["groups"][0] = json!("pow2(32)");
+    let mut host = Host::new(&context, &manifest.to_string(), &|path| read(&generation, path), SIZE).unwrap();
+    let scene = Scene { vertices: &[], objects: &[], view_projection: IDENTITY };
+    let error = host.render(&scene, [0.0; 4]).err().unwrap().0;
+    assert!(error.contains(" has 4294967296 workgroups, and the device allows "), "{error}");
 }
 
 /// A uniform without a value would be 0, and the image another one.

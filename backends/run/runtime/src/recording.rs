@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use fragbuf_codegen::{LoopId, PassId, PlannedPass, ResourceId};
-use fragbuf_frame::{COUNTERS_RESOURCE, Cursor, HostWait, PassRun, WordRange};
+use fragbuf_frame::{COUNTERS_RESOURCE, Cursor, HostWait, PassRun, WordRange, first_of_query};
 use fragbuf_templates::vocabulary::{Kind, Objects};
 
 use crate::attachments::{Attachments, Clears, OutputState, Textures};
@@ -200,7 +200,7 @@ fn conditional(renderer: &Renderer, run: PassRun) -> Option<(&ConditionalDraws, 
 fn draw_boxes(renderer: &Renderer, pass: &mut wgpu::RenderPass<'_>, run: PassRun, cursor: &Cursor) {
     let Some(objects) = &renderer.objects else { return };
     let plan = renderer.plan();
-    let query = plan.pass_id(&plan.passes[run.pass.0].name).unwrap_or(run.pass);
+    let query = first_of_query(plan, run.pass);
     let first = renderer.pipeline_set().loop_queries();
     for object in 0..objects.boxes().len() as u32 {
         pass.begin_occlusion_query(first + object);

@@ -10,7 +10,7 @@ use crate::Error;
 use crate::access::Access;
 use crate::context::failed;
 use crate::gpu::Gpu;
-use crate::memory::{Buffer, Memory, Place, Texture};
+use crate::memory::{Buffer, HostAccess, Memory, Texture};
 use crate::names::{aspects, is_depth};
 use crate::recorder::Recorder;
 use crate::shaders::{Shaders, descriptor_type};
@@ -30,21 +30,12 @@ const UNIFORM: Access = Access::new(
     vk::ImageLayout::UNDEFINED,
 );
 
-/// The most bytes that `vkCmdUpdateBuffer` writes.
-const MOST_BYTES: usize = 65_536;
-
 impl Blocks {
     pub fn new(gpu: &Rc<Gpu>, plan: &Plan) -> Result<Self, Error> {
         let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
         let created = plan.uniform_blocks.iter().map(|block| {
             let what = format!("the uniform block `{}`", block.name);
-            if block.bytes > MOST_BYTES || block.bytes % 4 != 0 {
-                return Err(Error(format!(
-                    "{what} has {} bytes: Vulkan writes up to {MOST_BYTES}, in fours",
-                    block.bytes
-                )));
-            }
-            let buffer = Buffer::new(gpu, &what, block.bytes as u64, usage, Place::Device)?;
+            let buffer = Buffer::new(gpu, &what, block.bytes as u64, usage, HostAccess::None)?;
             Ok((block.name.clone(), (buffer, Vec::new())))
         });
         Ok(Blocks { blocks: created.collect::<Result<_, Error>>()? })
@@ -58,7 +49,8 @@ impl Blocks {
         let (before, after) = (buffer.state.change(Access::COPY_TARGET, false), buffer.state.change(UNIFORM, false));
         recorder.barriers(&before.map(|barrier| (barrier, None)).into_iter().collect::<Vec<_>>())?;
         let commands = recorder.commands()?;
-        // SAFETY: the buffer is as large as the block, and no render pass is open.
+        // SAFETY: the buffer is as large as the block, which `Manifest::parse` limits to what the command writes, in
+        // whole words, and no render pass is open.
         unsafe { gpu.device.cmd_update_buffer(commands, buffer.buffer, 0, bytes) };
         bytes.clone_into(content);
         recorder.barriers(&after.map(|barrier| (barrier, None)).into_iter().collect::<Vec<_>>())

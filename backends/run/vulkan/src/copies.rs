@@ -4,7 +4,7 @@ use ash::vk;
 
 use crate::access::Access;
 use crate::engine::Engine;
-use crate::memory::{Buffer, Memory, Place, Texture, whole};
+use crate::memory::{Buffer, HostAccess, Memory, Texture, whole};
 use crate::names::{aspects, is_depth, is_integer, texel_bytes};
 use crate::{Error, OUTPUT};
 
@@ -139,7 +139,7 @@ impl Engine<'_> {
             )));
         }
         let usage = vk::BufferUsageFlags::TRANSFER_SRC;
-        let mut source = Buffer::new(&self.gpu, "texels", texels.len() as u64, usage, Place::Upload)?;
+        let mut source = Buffer::new(&self.gpu, "texels", texels.len() as u64, usage, HostAccess::Write)?;
         source.write(texels);
         let aspect = match is_depth(texture.format) {
             true => vk::ImageAspectFlags::DEPTH,

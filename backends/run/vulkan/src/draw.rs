@@ -58,19 +58,9 @@ impl Frame<'_, '_> {
             unsafe { device.cmd_dispatch_indirect(commands, arguments, 0) };
             return Ok(());
         }
-        let most = self.engine.gpu.limits.max_compute_work_group_count;
-        let mut groups = [1; 3];
-        for ((count, formula), most) in groups.iter_mut().zip(&pass.groups).zip(most) {
-            let value = call.value(formula)?;
-            *count = u32::try_from(value).ok().filter(|value| *value <= most).ok_or_else(|| {
-                Error(format!(
-                    "the pass `{}` has {value} workgroups, and the device allows {most}: draw slices",
-                    pass.name
-                ))
-            })?;
-        }
+        let [x, y, z] = call.groups(pass, self.engine.gpu.limits.max_compute_work_group_count)?;
         // SAFETY: the numbers are within the limits.
-        unsafe { device.cmd_dispatch(commands, groups[0], groups[1], groups[2]) };
+        unsafe { device.cmd_dispatch(commands, x, y, z) };
         Ok(())
     }
 

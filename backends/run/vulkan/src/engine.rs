@@ -16,7 +16,7 @@ use crate::attachments::{Attachments, render_pass, sample_formula};
 use crate::bindings::{Blocks, Cache};
 use crate::context::Context;
 use crate::gpu::Gpu;
-use crate::memory::{Buffer, Memory, Place, Texture};
+use crate::memory::{Buffer, HostAccess, Memory, Texture};
 use crate::names::{formats, samples};
 use crate::pipeline::{Pipeline, compute, graphics};
 use crate::queries::Queries;
@@ -85,6 +85,8 @@ impl<'c> Engine<'c> {
     pub fn reset(&mut self, size: [u32; 2]) -> Result<(), Error> {
         self.recorder.discard();
         self.cache.clear();
+        // Queries that have not been submitted never end.
+        self.queries = Queries::new(&self.gpu);
         self.memory.clear();
         self.blocks = Blocks::new(&self.gpu, &self.plan)?;
         self.size = size;
@@ -95,9 +97,9 @@ impl<'c> Engine<'c> {
     pub fn upload(&mut self, scene: &Scene<'_>, boxes: &[u8]) -> Result<(), Error> {
         for (slot, bytes) in self.vertices.iter_mut().zip([scene.vertices, boxes]) {
             if slot.as_ref().is_none_or(|buffer| buffer.bytes < bytes.len() as u64) {
-                let (usage, place) = (vk::BufferUsageFlags::VERTEX_BUFFER, Place::Upload);
+                let (usage, access) = (vk::BufferUsageFlags::VERTEX_BUFFER, HostAccess::Write);
                 *slot = None;
-                *slot = Some(Buffer::new(&self.gpu, "the vertices", bytes.len() as u64, usage, place)?);
+                *slot = Some(Buffer::new(&self.gpu, "the vertices", bytes.len() as u64, usage, access)?);
             }
             slot.iter_mut().for_each(|buffer| buffer.write(bytes));
         }
@@ -129,7 +131,7 @@ impl<'c> Engine<'c> {
                         | vk::BufferUsageFlags::INDIRECT_BUFFER
                         | vk::BufferUsageFlags::TRANSFER_SRC
                         | vk::BufferUsageFlags::TRANSFER_DST;
-                    Memory::Buffer(Buffer::new(&self.gpu, &what, bytes, usage, Place::Device)?)
+                    Memory::Buffer(Buffer::new(&self.gpu, &what, bytes, usage, HostAccess::None)?)
                 }
             };
             self.memory.insert(resource.name.clone(), created);
@@ -240,7 +242,8 @@ pub struct Frame<'e, 'c> {
 
 impl Device for Frame<'_, '_> {
     fn clear(&mut self, resource: &str, value: u32, texel: Option<&serde_json::Value>) -> Result<(), Error> {
-        self.engine.clear(resource, value, texel)
+        self.engine.clear(resource, value, texel)?;
+        self.engine.recorder.end_step()
     }
 
     fn copy(&mut self, from: &str, to: &str) -> Result<(), Error> {
@@ -250,11 +253,13 @@ impl Device for Frame<'_, '_> {
             engine.recorder.transition(memory, access)?;
         }
         let commands = engine.recorder.commands()?;
-        copies::copy(&engine.gpu.device, commands, [&engine.memory[from], &engine.memory[to]])
+        copies::copy(&engine.gpu.device, commands, [&engine.memory[from], &engine.memory[to]])?;
+        engine.recorder.end_step()
     }
 
     fn pass(&mut self, pass: &Pass, call: &Call<'_>) -> Result<(), Error> {
-        self.record(pass, call)
+        self.record(pass, call)?;
+        self.engine.recorder.end_step()
     }
 
     fn words(&mut self, resource: &str, first: u64, count: u64) -> Result<Vec<u32>, Error> {

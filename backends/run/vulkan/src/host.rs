@@ -154,12 +154,12 @@ impl<'c> Host<'c> {
     /// Reads the counters of a slice in their order.
     fn counters(&mut self) -> Result<Vec<u32>, Error> {
         let plan = self.engine.plan.clone();
-        let Some(end) = plan.counters.iter().map(|counter| counter.index + 1).max() else { return Ok(Vec::new()) };
-        let words = self.engine.words("counters", 0, end as u64)?;
-        Ok(plan.counters.iter().filter_map(|counter| words.get(counter.index).copied()).collect())
+        let Some(last) = plan.counters.iter().map(|counter| counter.index as u64).max() else { return Ok(Vec::new()) };
+        let words = self.engine.words("counters", 0, last.saturating_add(1))?;
+        Ok(plan.counters.iter().map(|counter| words.get(counter.index).copied().unwrap_or(0)).collect())
     }
 
-    /// All words of a buffer after a frame.
+    /// All words of a buffer after a frame, with [`Self::set_rows`] those of the last slice.
     pub fn words(&mut self, resource: &str) -> Result<Vec<u32>, Error> {
         let known = self.engine.plan.resource(resource);
         let known = known.ok_or_else(|| Error(format!("there is no resource `{resource}`")))?;

@@ -1,11 +1,11 @@
 //! A host for Vulkan 1.1 and later: it runs generated SPIR-V passes and knows nothing but their manifest.
 //!
 //! Input: `manifest.json`, the files that it names, a scene. Output: the image, the words of any buffer, the
-//! counters. It contains no name of a technique, a resource or a pass, so it runs whatever the description says. The
-//! crate `fragbuf-follow` parses the manifest and walks through its steps. Here `context` opens Vulkan,
-//! `requirements` compares a device with the manifest, `gpu` creates the logical device, `memory` creates buffers and
-//! textures, `shaders`, `attachments` and `pipeline` create what passes need, `access` decides which barriers are
-//! needed, `engine` and `draw` record the steps, and `host` is what a caller uses.
+//! counters. Apart from `output` and `counters`, it contains no name of a technique, a resource or a pass, so it runs
+//! whatever the description says. The crate `fragbuf-follow` parses the manifest and walks through its steps. Here
+//! `context` opens Vulkan, `requirements` compares a device with the manifest, `gpu` creates the logical device,
+//! `memory` creates buffers and textures, `shaders`, `attachments` and `pipeline` create what passes need, `access`
+//! decides which barriers are needed, `engine` and `draw` record the steps, and `host` is what a caller uses.
 #![allow(unsafe_code, reason = "every call of Vulkan is unsafe")]
 
 mod access;

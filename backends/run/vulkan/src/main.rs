@@ -52,10 +52,7 @@ fn draw(folder: &Path, out: &Path, settings: &Settings<'_>) -> Result<(), Error>
     let (vertices, objects) = (panes::vertices(host.vertex_inputs(), SIZE), panes::objects());
     let identity = std::array::from_fn(|index| if index % 5 == 0 { 1.0 } else { 0.0 });
     let scene = Scene { vertices: &vertices, objects: &objects, view_projection: identity };
-    let image = host.render(&scene, [1.0; 4])?;
-    if image.lost > 0 {
-        eprintln!("warning: {} fragments are missing or in the wrong order: {:?}", image.lost, image.counters);
-    }
+    let image = host.render(&scene, [1.0; 4])?.without_losses()?;
     let bytes: Vec<u8> = image.pixels.iter().flatten().map(|channel| (channel * 255.0).round() as u8).collect();
     let file = std::fs::File::create(out).map_err(|error| Error(format!("{}: {error}", out.display())))?;
     let mut encoder = png::Encoder::new(file, SIZE[0], SIZE[1]);

@@ -41,15 +41,15 @@ pub struct Texture {
     pub state: State,
 }
 
-/// Who accesses a buffer.
+/// How the host accesses a buffer.
 #[derive(Clone, Copy, PartialEq)]
-pub enum Place {
-    /// The device.
-    Device,
-    /// The host writes and the device reads.
-    Upload,
-    /// The device writes and the host reads.
-    Readback,
+pub enum HostAccess {
+    /// Not at all.
+    None,
+    /// It writes, and the device reads.
+    Write,
+    /// It reads, and the device writes.
+    Read,
 }
 
 impl Buffer {
@@ -59,7 +59,7 @@ impl Buffer {
         what: &str,
         bytes: u64,
         usage: vk::BufferUsageFlags,
-        place: Place,
+        access: HostAccess,
     ) -> Result<Self, Error> {
         let is_storage = usage.contains(vk::BufferUsageFlags::STORAGE_BUFFER);
         let range = if is_storage { gpu.limits.max_storage_buffer_range.into() } else { u64::MAX };
@@ -83,17 +83,17 @@ impl Buffer {
             state: State::default(),
         };
         let visible = Properties::HOST_VISIBLE | Properties::HOST_COHERENT;
-        let wanted = match place {
-            Place::Device => [Properties::DEVICE_LOCAL, Properties::empty()],
-            Place::Upload => [visible | Properties::DEVICE_LOCAL, visible],
-            Place::Readback => [visible | Properties::HOST_CACHED, visible],
+        let wanted = match access {
+            HostAccess::None => [Properties::DEVICE_LOCAL, Properties::empty()],
+            HostAccess::Write => [visible | Properties::DEVICE_LOCAL, visible],
+            HostAccess::Read => [visible | Properties::HOST_CACHED, visible],
         };
         // SAFETY: the buffer has no memory yet, and the memory is as large as it needs.
         unsafe {
             let needed = gpu.device.get_buffer_memory_requirements(buffer);
             created.memory = gpu.allocate(&needed, &wanted, what)?;
             gpu.device.bind_buffer_memory(buffer, created.memory, 0).map_err(failed(what))?;
-            if place != Place::Device {
+            if access != HostAccess::None {
                 let whole = (0, vk::WHOLE_SIZE, vk::MemoryMapFlags::empty());
                 let mapped = gpu.device.map_memory(created.memory, whole.0, whole.1, whole.2);
                 created.mapped = mapped.map_err(failed(what))?;

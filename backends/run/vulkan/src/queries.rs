@@ -18,7 +18,7 @@ pub struct Queries {
 
 struct Pool {
     pool: vk::QueryPool,
-    room: u32,
+    capacity: u32,
     /// The queries of the latest run.
     used: u32,
 }
@@ -30,26 +30,27 @@ impl Queries {
 
     /// Records that a pass begins with this number of unused queries.
     pub fn begin(&mut self, recorder: &mut Recorder, pass: &str, count: u32) -> Result<vk::QueryPool, Error> {
-        if self.pools.get(pass).is_none_or(|pool| pool.room < count) {
+        if self.pools.get(pass).is_none_or(|pool| pool.capacity < count) {
             recorder.finish()?;
             let info =
                 vk::QueryPoolCreateInfo::default().query_type(vk::QueryType::OCCLUSION).query_count(count.max(1));
             // SAFETY: the device exists, and has finished what used the former pool.
             unsafe {
                 let pool = self.gpu.device.create_query_pool(&info, None).map_err(failed("occlusion queries"))?;
-                if let Some(former) = self.pools.insert(pass.to_owned(), Pool { pool, room: count.max(1), used: 0 }) {
+                let created = Pool { pool, capacity: count.max(1), used: 0 };
+                if let Some(former) = self.pools.insert(pass.to_owned(), created) {
                     self.gpu.device.destroy_query_pool(former.pool, None);
                 }
             }
         }
         let pool = self.pools.get_mut(pass).map(|pool| {
             pool.used = count;
-            (pool.pool, pool.room)
+            (pool.pool, pool.capacity)
         });
-        let (pool, room) = pool.unwrap_or_default();
+        let (pool, capacity) = pool.unwrap_or_default();
         let commands = recorder.commands()?;
         // SAFETY: the command buffer is recording outside of a render pass.
-        unsafe { self.gpu.device.cmd_reset_query_pool(commands, pool, 0, room) };
+        unsafe { self.gpu.device.cmd_reset_query_pool(commands, pool, 0, capacity) };
         Ok(pool)
     }
 
@@ -60,7 +61,7 @@ impl Queries {
         let mut samples = vec![0_u64; pool.used as usize];
         if !samples.is_empty() {
             let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WAIT;
-            // SAFETY: every query of the latest run has ended.
+            // SAFETY: every query of the latest run has ended: `Manifest::parse` has checked that the pass draws.
             unsafe { self.gpu.device.get_query_pool_results(pool.pool, 0, &mut samples, flags) }
                 .map_err(failed("the result of an occlusion query"))?;
         }

@@ -8,8 +8,11 @@ use crate::Error;
 use crate::access::{Access, Barrier};
 use crate::context::failed;
 use crate::gpu::Gpu;
-use crate::memory::{Buffer, Memory, Place, Texture, whole};
+use crate::memory::{Buffer, HostAccess, Memory, Texture, whole};
 use crate::names::aspects;
+
+/// The most steps of a frame in one command buffer: a loop may have a million iterations.
+const MOST_STEPS: u32 = 4096;
 
 /// A command buffer and the fence of its submission.
 pub struct Recorder {
@@ -18,13 +21,16 @@ pub struct Recorder {
     commands: vk::CommandBuffer,
     fence: vk::Fence,
     is_recording: bool,
+    /// The steps of the frame in the command buffer.
+    steps: u32,
     staging: Option<Buffer>,
 }
 
 impl Recorder {
     pub fn new(gpu: &Rc<Gpu>) -> Result<Self, Error> {
         let (pool, commands, fence) = (vk::CommandPool::null(), vk::CommandBuffer::null(), vk::Fence::null());
-        let mut recorder = Recorder { gpu: gpu.clone(), pool, commands, fence, is_recording: false, staging: None };
+        let mut recorder =
+            Recorder { gpu: gpu.clone(), pool, commands, fence, is_recording: false, steps: 0, staging: None };
         let info = vk::CommandPoolCreateInfo::default().queue_family_index(gpu.family);
         // SAFETY: the family is that of the device's queue.
         unsafe {
@@ -48,8 +54,15 @@ impl Recorder {
                 self.gpu.device.begin_command_buffer(self.commands, &info).map_err(failed("the command buffer"))?;
             }
             self.is_recording = true;
+            self.steps = 0;
         }
         Ok(self.commands)
+    }
+
+    /// Ends a step of the frame. Submits what has been recorded if it is long.
+    pub fn end_step(&mut self) -> Result<(), Error> {
+        self.steps += 1;
+        if self.steps < MOST_STEPS { Ok(()) } else { self.finish() }
     }
 
     /// Forgets commands that have not been submitted.
@@ -135,7 +148,7 @@ impl Recorder {
             // The former buffer may be in use.
             self.finish()?;
             let usage = vk::BufferUsageFlags::TRANSFER_DST;
-            self.staging = Some(Buffer::new(&self.gpu, "words for the host", bytes, usage, Place::Readback)?);
+            self.staging = Some(Buffer::new(&self.gpu, "words for the host", bytes, usage, HostAccess::Read)?);
         }
         let commands = self.commands()?;
         let Some(staging) = &mut self.staging else { return Ok(Vec::new()) };

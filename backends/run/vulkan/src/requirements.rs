@@ -117,8 +117,8 @@ fn missing_version(context: &Context, requirements: &Requirements) -> Vec<String
     if present < needed { vec![format!("Vulkan {}.{}", needed.0, needed.1)] } else { Vec::new() }
 }
 
-/// Describes the limits that a device does not meet. Formulas over symbols without a value are checked when memory is
-/// allocated.
+/// Describes the limits that a device does not meet. Formulas over symbols without a value are checked later: sizes
+/// when memory is created, workgroups when they are dispatched.
 fn missing_limits(limits: &vk::PhysicalDeviceLimits, plan: &Plan, values: &Values) -> Vec<String> {
     let missing = plan.limits.iter().filter_map(|limit| {
         let name = limit.vulkan.as_ref()?;

@@ -65,7 +65,7 @@ impl Shaders {
                 .stage_flags(stages.into_iter().fold(vk::ShaderStageFlags::empty(), |all, stage| all | stage));
             groups.entry(binding.group).or_default().push(entry);
         }
-        let count = groups.keys().next_back().map_or(0, |last| last + 1);
+        let count = groups.keys().next_back().map_or(0, |last| last.saturating_add(1));
         let device = &self.gpu.device;
         if count > self.gpu.limits.max_bound_descriptor_sets {
             return Err(Error(format!("pass `{pass}`: the device has no descriptor set {}", count - 1)));

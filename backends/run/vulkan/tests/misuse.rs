@@ -19,7 +19,7 @@ fn generated(key: &str, set: &[(&str, &str)]) -> Generated {
 
 /// Returns the message of an error.
 fn message<T>(result: Result<T, Error>) -> String {
-    result.err().expect("an error").to_string()
+    result.err().unwrap().to_string()
 }
 
 /// Opens a host for a changed manifest and returns the message.
@@ -56,7 +56,7 @@ fn a_broken_manifest_is_an_error() {
     assert_says(&broken(&|manifest| manifest["resources"] = json!([])), &["manifest: step", "no resource"]);
     let end = |manifest: &Value| {
         let steps = manifest["steps"].as_array().unwrap();
-        steps.iter().position(|step| step["do"] == "loop_end").expect("a loop")
+        steps.iter().position(|step| step["do"] == "loop_end").unwrap()
     };
     assert_says(
         &broken(&|manifest| {

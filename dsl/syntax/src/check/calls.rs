@@ -13,7 +13,7 @@ use super::noted::{Noted, signature_of_constructor};
 use super::swizzles;
 use super::written_types::segments;
 use crate::foreign_functions::{self, Given};
-use crate::inspection::{NameKind, is_placeholder};
+use crate::inspection::NameKind;
 use crate::methods::{self, Spelling};
 use crate::tree::{Expr, Kind, Use};
 use crate::types::Type;
@@ -37,7 +37,7 @@ impl Checker<'_, '_, '_> {
             return self.unsupported(span, "only named functions can be called", help);
         };
         let name_span = self.at(call.func.span());
-        if path.last().is_some_and(|name| is_placeholder(name)) {
+        if path.last().is_some_and(|name| self.report.is_placeholder(name)) {
             match path.len() {
                 1 => self.candidates_for_value(),
                 _ => self.candidates_in(&path),
@@ -234,7 +234,7 @@ impl Checker<'_, '_, '_> {
         let receiver = self.expr(&call.receiver, None);
         let name = call.method.to_string();
         let name_span = self.at(call.method.span());
-        if is_placeholder(&name) {
+        if self.report.is_placeholder(&name) {
             self.candidates_of(receiver.ty);
             return Expr::error(span);
         }

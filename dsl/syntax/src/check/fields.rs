@@ -10,7 +10,7 @@ use super::declared_names::Place;
 use super::given::source_of_operand;
 use super::mismatch::quoted;
 use super::noted::Noted;
-use crate::inspection::{NameKind, is_placeholder};
+use crate::inspection::NameKind;
 use crate::tree::{Expr, Kind, Use};
 use crate::types::Type;
 use crate::{foreign_names, methods};
@@ -26,7 +26,7 @@ impl Checker<'_, '_, '_> {
             syn::Member::Named(name) => syn::ext::IdentExt::unraw(name).to_string(),
             syn::Member::Unnamed(index) => index.index.to_string(),
         };
-        if is_placeholder(&name) {
+        if self.report.is_placeholder(&name) {
             self.candidates_of(base.ty);
             return Expr::error(span);
         }

@@ -79,7 +79,8 @@ impl Checker<'_, '_, '_> {
         })
     }
 
-    /// Sets what can be written in place of a value: variables in scope, functions and the words of statements are known to the caller.
+    /// Sets what can be written in place of a value: variables in scope, functions and
+    /// constants. Words of statements are known to the caller.
     pub(super) fn candidates_for_value(&mut self) {
         if !self.report.has_names() {
             return;

@@ -11,7 +11,7 @@ use super::noted::Noted;
 use super::written_types::segments;
 use crate::constants::{self, Constant};
 use crate::foreign_names;
-use crate::inspection::{NameKind, is_placeholder};
+use crate::inspection::NameKind;
 use crate::tree::{Expr, Kind};
 use crate::types::Type;
 
@@ -29,7 +29,7 @@ impl Checker<'_, '_, '_> {
     }
 
     fn name(&mut self, name: &str, span: SourceSpan) -> Expr {
-        if is_placeholder(name) {
+        if self.report.is_placeholder(name) {
             self.candidates_for_value();
             return Expr::error(span);
         }
@@ -58,7 +58,7 @@ impl Checker<'_, '_, '_> {
                 self.note(&span, || Noted::Known(NameKind::Constant, path.join("::"), signature()));
                 constant_expr(&constant, span)
             }
-            None if path.last().is_some_and(|name| is_placeholder(name)) => {
+            None if path.last().is_some_and(|name| self.report.is_placeholder(name)) => {
                 self.candidates_in(path);
                 Expr::error(span)
             }

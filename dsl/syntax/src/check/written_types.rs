@@ -6,7 +6,6 @@ use fragbuf_model::{SourceSpan, codes};
 use syn::spanned::Spanned;
 
 use super::noted::candidates_for_type;
-use crate::inspection::is_placeholder;
 use crate::report::Report;
 use crate::types::Type;
 use crate::{foreign_names, unknown_name};
@@ -47,7 +46,7 @@ fn unsupported_type(span: &SourceSpan, report: &mut Report) -> Type {
 }
 
 fn named_type(name: &str, span: &SourceSpan, report: &mut Report) -> Type {
-    if is_placeholder(name) {
+    if report.is_placeholder(name) {
         candidates_for_type(report);
         return Type::Error;
     }

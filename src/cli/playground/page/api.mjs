@@ -83,7 +83,7 @@ export const api = {
 export function latest(action, { done, failed }) {
     /** @type {AbortController | null} */
     let running = null;
-    const start = async (...values) => {
+    return async (...values) => {
         running?.abort();
         const own = (running = new AbortController());
         try {
@@ -95,9 +95,4 @@ export function latest(action, { done, failed }) {
             if (own === running) running = null;
         }
     };
-    start.stop = () => {
-        running?.abort();
-        running = null;
-    };
-    return start;
 }

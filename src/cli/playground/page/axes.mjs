@@ -1,7 +1,8 @@
 /**
  * The table of axes: for every axis its current value and the others, those that are illegal here with the reason.
  *
- * Input: the axes of an analysis. Output: edits of the text, as the server gives them, when a value is chosen. Nothing here knows an axis.
+ * Input: the axes of an analysis, and its text. Output: edits, as the server gives them, with the text that they are about, when a value is
+ * chosen. Nothing here knows an axis.
  */
 import { element, fill } from "./dom.mjs";
 import { inline } from "./markdown.mjs";
@@ -12,13 +13,24 @@ import { inline } from "./markdown.mjs";
 /**
  * Creates the table.
  * @param {HTMLElement} parent
- * @param {(edits: object[]) => boolean | unknown} choose
+ * @param {(edits: object[], about: string) => boolean | unknown} apply returns false if it refuses the edits
  */
-export function createAxes(parent, choose) {
+export function createAxes(parent, apply) {
     let before = "";
+    let newest = "";
+    const choose = (edits) => {
+        const isApplied = apply(edits, newest) !== false;
+        // The table shows the choice now: the next one to show may be equal to the one of before.
+        if (isApplied) before = "";
+        return isApplied;
+    };
     return {
-        /** @param {Axis[]} axes */
-        show(axes) {
+        /**
+         * @param {Axis[]} axes
+         * @param {string} [about] the text of which their edits are
+         */
+        show(axes, about = "") {
+            newest = about;
             const now = JSON.stringify(axes);
             if (now === before) return;
             before = now;
@@ -39,18 +51,20 @@ function row({ axis, value, meaning, values = [] }, open, choose) {
         { id: `axis-${axis}`, "aria-label": axis, "aria-describedby": `meaning-${axis}` },
         options(value, values),
     );
+    let current = select.value;
     select.addEventListener("change", () => {
         const chosen = values.find(({ key }) => key === select.value);
         // The table shows what the text has.
-        if (chosen && choose(chosen.edits) === false) select.value = value;
+        if (chosen && choose(chosen.edits)) current = select.value;
+        else select.value = current;
     });
-    const current = values.find(({ current }) => current)?.summary ?? meaning;
+    const summary = values.find(({ current }) => current)?.summary ?? meaning;
     return element(
         "div",
         { className: "axis" },
         element("label", { htmlFor: `axis-${axis}` }, axis),
         select,
-        element("p", { className: "note", id: `meaning-${axis}` }, inline(current ?? "")),
+        element("p", { className: "note", id: `meaning-${axis}` }, inline(summary ?? "")),
         reasons(axis, values, open),
     );
 }

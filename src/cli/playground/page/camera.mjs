@@ -5,6 +5,24 @@
 /** The view that the command line calls `auto`: right, above and in front. */
 export const AUTO = { azimuth: 28.81, elevation: 21.52, zoom: 1 };
 
+/** The least and the greatest elevation and zoom. */
+const [ELEVATIONS, ZOOMS] = [
+    [-90, 90],
+    [0.1, 100],
+];
+
+/** Returns a camera whose elevation and zoom are in their ranges, with an azimuth from 0 to 360 degrees. */
+export function limited({ azimuth, elevation, zoom }) {
+    const within = (value, [least, most]) => Math.min(most, Math.max(least, value));
+    const turned = azimuth % 360;
+    // Additions round: an azimuth in its range stays as it is.
+    return {
+        azimuth: turned < 0 ? turned + 360 : turned,
+        elevation: within(elevation, ELEVATIONS),
+        zoom: within(zoom, ZOOMS),
+    };
+}
+
 /** Half of the vertical field of view, in radians, and the size of the frame relative to the scene. */
 const [HALF_ANGLE, MARGIN] = [(20 * Math.PI) / 180, 1.04];
 

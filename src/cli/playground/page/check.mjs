@@ -17,6 +17,9 @@ export function createCheck(elements, { check, lines, text }) {
     /** @type {AbortController | null} */
     let running = null;
     let checked = "";
+    let newest = "";
+    /** A verdict is about the text that was checked. */
+    const mark = () => result.classList.toggle("outdated", checked !== "" && checked !== newest);
     const busy = (is) => {
         run.disabled = is;
         cancel.disabled = !is;
@@ -34,6 +37,7 @@ export function createCheck(elements, { check, lines, text }) {
         const clock = setInterval(() => (waiting.textContent = `${seconds()} s`), 100);
         try {
             checked = text();
+            mark();
             const body = {
                 text: checked,
                 target: target.value,
@@ -61,8 +65,9 @@ export function createCheck(elements, { check, lines, text }) {
             clearInterval(clock);
             if (own === running) {
                 running = null;
-                cancel.contains(document.activeElement) && run.focus();
+                const isFocused = document.activeElement === cancel;
                 busy(false);
+                if (isFocused) run.focus();
             }
         }
     });
@@ -80,10 +85,16 @@ export function createCheck(elements, { check, lines, text }) {
             );
             if (usable.includes(before)) target.value = before;
         },
-        /** The text changed: a verdict is about the text that was checked. */
+        /** Checks on a target. The focus is on the button that cancels it: the one that was pressed may be hidden now. */
+        start(name) {
+            target.value = name;
+            form.requestSubmit();
+            if (running) cancel.focus();
+        },
+        /** The text changed. */
         outdate(now) {
-            if (checked && now !== checked && result.firstChild) result.classList.add("outdated");
-            if (now === checked) result.classList.remove("outdated");
+            newest = now;
+            mark();
         },
     };
 }

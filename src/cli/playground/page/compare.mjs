@@ -6,6 +6,7 @@
  */
 import { latest } from "./api.mjs";
 import { count, element, fill, percent } from "./dom.mjs";
+import { bitmapOf } from "./png.mjs";
 import { uniformValues } from "./uniforms.mjs";
 
 /**
@@ -83,12 +84,7 @@ export function createCompare(elements, { api, presets, request, failed }) {
 
 /** Returns the pixels of a rendered picture. */
 async function pixels({ png }) {
-    const binary = atob(png);
-    const bytes = Uint8Array.from(binary, (character) => character.charCodeAt(0));
-    const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }), {
-        premultiplyAlpha: "none",
-        colorSpaceConversion: "none",
-    });
+    const bitmap = await bitmapOf(png);
     const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
     const context = canvas.getContext("2d", { willReadFrequently: true });
     context.drawImage(bitmap, 0, 0);

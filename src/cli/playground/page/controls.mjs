@@ -7,12 +7,10 @@
 import { element, fill } from "./dom.mjs";
 import { parseScene, sceneName } from "./scenes.mjs";
 import { createSlider } from "./sliders.mjs";
-import { components, uniformValues } from "./uniforms.mjs";
+import { SIDES } from "./state.mjs";
+import { components, uniformValues, valuesOf } from "./uniforms.mjs";
 
 /** @typedef {import("./state.mjs").State} State */
-
-/** Sides of pictures: the server's CPU device draws the largest in seconds. */
-const SIDES = [16, 2048];
 
 /**
  * Fills the picker of presets.
@@ -50,8 +48,6 @@ export function createPresets(select, note, { techniques, examples }, chosen) {
             own.hidden = Boolean(found);
             describe(found?.[1]);
         },
-        /** Returns the text of a technique. */
-        technique: (key) => techniques.find((technique) => technique.key === key)?.text,
     };
 }
 
@@ -114,7 +110,6 @@ export function createView(elements, { scenes, devices }, store) {
         showScene(state.scene);
         [width.value, height.value] = state.size.map(String);
         device.value = state.device;
-        if (device.selectedIndex < 0) device.value = "auto";
     };
     show(store.value);
     store.subscribe((state, changed) => {
@@ -154,98 +149,119 @@ function parameterInput({ scene, values }, { name }, store) {
 }
 
 /**
- * The sliders of k and of the uniforms. They are built again only if the description declares others.
+ * The sliders of k and of the uniforms. They show the values of the store, and are built again only if the description declares others.
  * @param {{ k: HTMLElement, uniforms: HTMLElement }} elements
  * @param {ReturnType<typeof import("./state.mjs").createStore>} store
  */
 export function createValues(elements, store) {
     let built = "";
-    /** The k of the description that was shown last. */
+    /** What the description that was shown last keeps and declares. */
     let described = null;
+    /** The k of that description, unless the next one has a k of its own. */
+    let usual = null;
     /** Whether the next description is another one, with values of its own. */
     let fresh = false;
+    /** Functions that show values. */
+    let shows = [];
+    const showValues = () => {
+        const values = valuesOf(described, store.value);
+        for (const show of shows) show(values);
+    };
+    store.subscribe((_, changed) => {
+        if (described && (changed.has("k") || changed.has("uniforms"))) showValues();
+    });
     return {
         /** @param {{ keep: { k: number, capacity: number } | null, uniforms: Uniform[] }} description */
         show({ keep, uniforms }) {
             const key = JSON.stringify([keep, uniforms]);
-            if (key === built) return;
-            built = key;
-            if (fresh) store.set({ k: null, uniforms: {} });
-            fresh = false;
-            // Another k in the text is the person's newest choice.
-            if (described !== null && described !== keep?.k) store.set({ k: null });
-            described = keep?.k ?? null;
-            showK(elements.k, keep, store);
-            const values = uniformValues(uniforms, store.value.uniforms);
-            store.set({ uniforms: values });
-            fill(
-                elements.uniforms,
-                uniforms.map((uniform) => uniformSliders(uniform, values, store)),
-            );
+            const isOther = key !== built;
+            if (isOther) {
+                if (fresh) store.set({ k: null, uniforms: {} });
+                fresh = false;
+                // Another k in the text is the person's newest choice.
+                if (usual !== null && usual !== keep?.k) store.set({ k: null });
+                built = key;
+                described = { keep, uniforms };
+                usual = keep?.k ?? null;
+                shows = [];
+            }
+            store.set(valuesOf(described, store.value));
+            if (!isOther) return;
+            const change = (changes) => store.set(changes);
+            shows = [kSlider(elements.k, keep, change), ...uniformSliders(elements.uniforms, uniforms, store)];
+            showValues();
         },
         /** Builds the sliders again at the next description, with the values of the store, or of a preset with values of its own. */
         forget({ values }) {
             built = "";
-            described = null;
+            usual = null;
             fresh = !values;
         },
     };
 }
 
-function showK(parent, keep, store) {
-    if (!keep) {
-        store.set({ k: null });
-        fill(parent, element("p", { className: "note" }, "Keeps every fragment: no k to choose."));
-        return;
-    }
-    const { capacity } = keep;
-    const k = Math.min(store.value.k ?? keep.k, capacity);
-    store.set({ k });
+/** Fills the group of k. Returns what shows its value. */
+function kSlider(parent, keep, change) {
+    const capacity = keep?.capacity ?? 0;
     if (capacity <= 1) {
-        fill(parent, element("p", { className: "note" }, "Keeps one fragment per pixel."));
-        return;
+        const text = keep ? "Keeps one fragment per pixel." : "Keeps every fragment: no k to choose.";
+        fill(parent, element("p", { className: "note" }, text));
+        return () => {};
     }
     const slider = createSlider({
         label: "k",
-        value: k,
+        value: keep.k,
         least: 1,
         most: capacity,
         bounds: [1, capacity],
         whole: true,
-        changed: (k) => store.set({ k }),
+        changed: (k) => change({ k }),
     });
     fill(parent, slider.row, element("p", { className: "note" }, `fragments kept per pixel, of at most ${capacity}`));
+    return ({ k }) => slider.show(k);
 }
 
 /** @typedef {import("./uniforms.mjs").Uniform} Uniform */
 
-function uniformSliders(uniform, values, store) {
+/** Fills the group of uniforms. Returns what shows the value of each. */
+function uniformSliders(parent, uniforms, store) {
+    const groups = uniforms.map((uniform) => uniformSlider(uniform, store));
+    fill(
+        parent,
+        groups.map(({ row }) => row),
+    );
+    return groups.map(({ show }) => show);
+}
+
+function uniformSlider(uniform, store) {
     const { name, type } = uniform;
     const number = components(uniform);
     const whole = type === "u32" || type === "i32";
     const least = type === "i32" ? -16 : number === 3 ? -1 : 0;
     const change = (index, value) => {
-        const before = store.value.uniforms[name];
-        const values = Array.isArray(before) ? before.with(index, value) : value;
-        store.set({ uniforms: { ...store.value.uniforms, [name]: values } });
+        const { uniforms } = store.value;
+        const before = uniformValues([uniform], uniforms)[name];
+        store.set({ uniforms: { ...uniforms, [name]: Array.isArray(before) ? before.with(index, value) : value } });
     };
     const slider = (index) =>
         createSlider({
             label: number === 1 ? name : "xyzw"[index],
             what: number === 1 ? "" : name,
-            value: number === 1 ? values[name] : values[name][index],
+            value: [store.value.uniforms[name]].flat()[index],
             least,
             most: whole ? 16 : 1,
             whole,
             bounds: type === "u32" ? [0, 4294967295] : undefined,
             changed: (value) => change(index, value),
-        }).row;
+        });
     const sliders = Array.from({ length: number }, (_, index) => slider(index));
-    if (number === 1) return sliders[0];
-    return element(
+    const show = ({ uniforms }) => sliders.forEach((slider, index) => slider.show([uniforms[name]].flat()[index]));
+    if (number === 1) return { row: sliders[0].row, show };
+    const row = element(
         "div",
         { className: "vector", role: "group", "aria-label": name },
         element("span", { className: "name" }, `${name}: ${type}`),
-        sliders,
+        sliders.map((slider) => slider.row),
     );
+    return { row, show };
 }

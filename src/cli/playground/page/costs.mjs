@@ -17,17 +17,26 @@ export function createCosts(elements, { predict, check, failed }) {
     const times = createTimes(elements.times);
     /** @type {number[] | null} */
     let histogram = null;
+    /** Counts changes of what a histogram is of. */
+    let changes = 0;
     let k = null;
     let description = null;
     let frame = null;
     const showHistogram = () => {
         if (histogram) drawHistogram(elements.histogram, histogram, k);
     };
+    const forgetHistogram = () => {
+        histogram = null;
+        const text = "The picture changed. Count again to see its histogram.";
+        fill(elements.histogram, element("p", { className: "note" }, text));
+    };
     elements.predict.addEventListener("click", async () => {
         elements.predict.disabled = true;
+        const before = changes;
         try {
             histogram = (await predict()).histogram;
-            showHistogram();
+            if (changes === before) showHistogram();
+            else forgetHistogram();
         } catch (error) {
             failed(error);
         } finally {
@@ -60,14 +69,10 @@ export function createCosts(elements, { predict, check, failed }) {
             k = value;
             showHistogram();
         },
-        /** The scene, its camera or the size changed: the histogram is of another picture. */
+        /** The description, its uniforms, the scene, its camera or the size changed: the histogram is of another picture. */
         outdate() {
-            if (!histogram) return;
-            histogram = null;
-            fill(
-                elements.histogram,
-                element("p", { className: "note" }, "The picture changed. Count again to see its histogram."),
-            );
+            changes += 1;
+            if (histogram) forgetHistogram();
         },
     };
 }

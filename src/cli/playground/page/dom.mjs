@@ -100,6 +100,19 @@ function digits(value, significant) {
     return String(Number(value.toPrecision(significant)));
 }
 
+/** Returns a function that runs `action` once per turn, however often it is called. */
+export function coalesced(action) {
+    let isWaiting = false;
+    return () => {
+        if (isWaiting) return;
+        isWaiting = true;
+        queueMicrotask(() => {
+            isWaiting = false;
+            action();
+        });
+    };
+}
+
 /** Returns a function that runs `action` once, `delay` milliseconds after its last call. */
 export function debounced(delay, action) {
     let timer = 0;

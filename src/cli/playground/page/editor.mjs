@@ -2,7 +2,8 @@
  * The editor of the description: CodeMirror with the diagnostics, hovers and completions of the server.
  *
  * Input: text, what the server answered about it. Output: calls of `changed` with every new text. An answer about another text than the one
- * shown is never used. What is wrong and how to fix it comes from the server alone.
+ * shown is never used: diagnostics and edits come with the text that they are about. What is wrong and how to fix it comes from the server
+ * alone.
  */
 import {
     Compartment,
@@ -60,13 +61,30 @@ import { wrapping } from "./wrapping.mjs";
  * @param {string} options.text
  * @param {typeof import("./api.mjs").api} options.api
  * @param {(text: string) => void} options.changed
+ * @param {() => void} options.outdated edits were not applied, because the text is another one than theirs
  * @param {(error: Error) => void} options.failed an error of a request
  */
-export function createEditor(parent, { text, api, changed, failed }) {
+export function createEditor(parent, { text, api, changed, outdated, failed }) {
     const language = new Compartment();
-    /** @type {Diagnostic[]} */
-    let shown = [];
-    const apply = (edits) => applyEdits(view, edits);
+    /** @type {{ diagnostics: Diagnostic[], about: string }} */
+    let shown = { diagnostics: [], about: "" };
+    const current = () => view.state.doc.toString();
+    /** Applies edits of an answer about `about`. Returns false, without a change, if the text is another one by now. */
+    const apply = (edits, about) => {
+        if (about !== current()) {
+            outdated();
+            return false;
+        }
+        view.dispatch({ changes: edits.map(({ from, to, insert }) => ({ from, to, insert })), userEvent: "input.fix" });
+        return true;
+    };
+    /** Applies the edits of a fix, as `apply`, and moves the focus to the text. */
+    const fix = (edits, about) => {
+        if (apply(edits, about)) view.dispatch({ scrollIntoView: true });
+        view.focus();
+    };
+    /** Returns the function that applies fixes of an answer about `about`. */
+    const fixing = (about) => (edits) => fix(edits, about);
     const view = new EditorView({
         parent,
         state: EditorState.create({
@@ -92,8 +110,8 @@ export function createEditor(parent, { text, api, changed, failed }) {
                 keyboardHover,
                 keymap.of([
                     { key: "Alt-i", run: (view) => showHover(api, view, failed) },
-                    { key: "F8", run: (view) => goToProblem(view, shown, apply) },
-                    { key: "Alt-Enter", run: () => fixAtCursor(view, shown, apply) },
+                    { key: "F8", run: (view) => goToProblem(view, shown, fixing(shown.about)) },
+                    { key: "Alt-Enter", run: () => fixAtCursor(view, shown.diagnostics, fixing(shown.about)) },
                     { key: "Escape", run: closeHover },
                     { key: "Tab", run: acceptCompletion },
                     indentWithTab,
@@ -115,15 +133,13 @@ export function createEditor(parent, { text, api, changed, failed }) {
         }),
     });
     return {
-        get text() {
-            return view.state.doc.toString();
-        },
+        apply,
+        fix,
         /** Replaces the whole text; one step to undo. */
         replace(text) {
-            const current = view.state.doc.toString();
-            if (text === current) return;
+            if (text === current()) return;
             view.dispatch({
-                changes: { from: 0, to: current.length, insert: text },
+                changes: { from: 0, to: view.state.doc.length, insert: text },
                 selection: { anchor: 0 },
                 scrollIntoView: true,
             });
@@ -132,18 +148,12 @@ export function createEditor(parent, { text, api, changed, failed }) {
         setNames(names) {
             view.dispatch({ effects: language.reconfigure(descriptionLanguage(names)) });
         },
-        /** Applies edits of an answer about `about`. Returns false, without a change, if the text is another one by now. */
-        apply(edits, about) {
-            if (about !== view.state.doc.toString()) return false;
-            apply(edits);
-            return true;
-        },
         /** Shows diagnostics of an answer about `about`; drops them if the text is another one by now. */
         show(/** @type {Diagnostic[]} */ diagnostics, about) {
-            if (about !== view.state.doc.toString()) return false;
-            shown = diagnostics;
+            if (about !== current()) return false;
+            shown = { diagnostics, about };
             const length = view.state.doc.length;
-            const marks = diagnostics.map((diagnostic) => mark(diagnostic, length, apply)).sort((a, b) => a.from - b.from);
+            const marks = diagnostics.map((diagnostic) => mark(diagnostic, length, fixing(about))).sort((a, b) => a.from - b.from);
             view.dispatch(setDiagnostics(view.state, marks));
             return true;
         },
@@ -154,14 +164,7 @@ export function createEditor(parent, { text, api, changed, failed }) {
             view.dispatch({ selection: { anchor: position }, effects: EditorView.scrollIntoView(position, { y: "center" }) });
             view.focus();
         },
-        focus: () => view.focus(),
     };
-}
-
-function applyEdits(view, edits) {
-    const changes = edits.map(({ from, to, insert }) => ({ from, to, insert }));
-    view.dispatch({ changes, userEvent: "input.fix", scrollIntoView: true });
-    view.focus();
 }
 
 /** Returns the mark of a diagnostic in the text, and what its tooltip shows. */
@@ -207,9 +210,9 @@ export function problemBody(diagnostic, apply) {
 }
 
 /** Applies the first fix of the diagnostic at the cursor, or of the next one. */
-function fixAtCursor(view, shown, apply) {
+function fixAtCursor(view, diagnostics, apply) {
     const head = view.state.selection.main.head;
-    const withFix = shown.filter((diagnostic) => diagnostic.fixes?.length > 0);
+    const withFix = diagnostics.filter((diagnostic) => diagnostic.fixes?.length > 0);
     const here = withFix.find(({ from, to }) => from <= head && head <= to) ?? withFix[0];
     if (!here) return false;
     apply(here.fixes[0].edits);
@@ -288,11 +291,12 @@ function closeHover(view) {
     return isOpen;
 }
 
-/** Selects the next diagnostic and shows its message there. */
-function goToProblem(view, shown, apply) {
+/** Selects the next diagnostic and shows its message there, unless it is about an earlier text. */
+function goToProblem(view, { diagnostics, about }, apply) {
     if (!nextDiagnostic(view)) return false;
+    if (about !== view.state.doc.toString()) return true;
     const { from, to } = view.state.selection.main;
-    const here = shown.find((diagnostic) => diagnostic.from <= to && Math.max(diagnostic.to, diagnostic.from) >= from);
+    const here = diagnostics.find((diagnostic) => diagnostic.from <= to && Math.max(diagnostic.to, diagnostic.from) >= from);
     const dom = here && element("div", { className: "problem prose" }, ...problemBody(here, apply));
     if (dom) view.dispatch({ effects: setKeyboardHover.of({ pos: from, end: to, above: true, create: () => ({ dom }) }) });
     return true;

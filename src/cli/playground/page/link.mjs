@@ -7,6 +7,9 @@
  * The form is `#v1.` and the state as JSON, deflated, in base64url.
  */
 
+import { limited } from "./camera.mjs";
+import { isSize } from "./state.mjs";
+
 /** @typedef {import("./state.mjs").State} State */
 
 const PREFIX = "v1.";
@@ -15,7 +18,7 @@ const PREFIX = "v1.";
 const LONGEST = 1 << 20;
 
 /** An error of a link, in words for the person who opened it. */
-export class LinkError extends Error {}
+class LinkError extends Error {}
 
 /**
  * Returns the fragment for a state, without `#`.
@@ -54,26 +57,17 @@ export async function decode(fragment) {
 /** Returns the fields that have the right form. The description must be one of them. */
 function checked(value) {
     if (typeof value?.text !== "string") throw new LinkError("The link holds no description: copy it again.");
-    const fields = { text: value.text };
+    // The editor has no other ends of lines.
+    const fields = { text: value.text.replace(/\r\n?/g, "\n") };
     if (typeof value.scene === "string" && value.scene.length < 1000) fields.scene = value.scene;
     if (Number.isInteger(value.k) && value.k > 0) fields.k = value.k;
     if (typeof value.device === "string") fields.device = value.device;
     if (isSize(value.size)) fields.size = value.size;
     const { azimuth, elevation, zoom } = value.camera ?? {};
-    if ([azimuth, elevation, zoom].every(Number.isFinite)) {
-        const within = (value, least, most) => Math.min(most, Math.max(least, value));
-        fields.camera = { azimuth: azimuth % 360, elevation: within(elevation, -90, 90), zoom: within(zoom, 0.1, 100) };
-    }
+    if ([azimuth, elevation, zoom].every(Number.isFinite)) fields.camera = limited({ azimuth, elevation, zoom });
     const uniforms = Object.entries(value.uniforms ?? {}).filter(([, numbers]) => isValue(numbers));
     fields.uniforms = Object.fromEntries(uniforms);
     return fields;
-}
-
-/** The greatest side of a picture that the server draws. */
-const LARGEST = 2048;
-
-function isSize(size) {
-    return Array.isArray(size) && size.length === 2 && size.every((side) => Number.isInteger(side) && side > 0 && side <= LARGEST);
 }
 
 function isValue(value) {

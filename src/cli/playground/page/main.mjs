@@ -6,11 +6,12 @@
  */
 import { api, latest } from "./api.mjs";
 import { createAxes } from "./axes.mjs";
+import { AUTO } from "./camera.mjs";
 import { createCheck } from "./check.mjs";
 import { createCompare } from "./compare.mjs";
 import { createPresets, createValues, createView } from "./controls.mjs";
 import { createCosts } from "./costs.mjs";
-import { byId, count, debounced, milliseconds } from "./dom.mjs";
+import { byId, coalesced, count, debounced, milliseconds } from "./dom.mjs";
 import { createEditor } from "./editor.mjs";
 import { decode, encode } from "./link.mjs";
 import { createModels, modelRow } from "./models.mjs";
@@ -24,6 +25,7 @@ import { frameOf } from "./statistics.mjs";
 import { createPanels } from "./tabs.mjs";
 import { createText } from "./text.mjs";
 import { createTheme } from "./theme.mjs";
+import { valuesOf } from "./uniforms.mjs";
 
 /** How long typing must rest before the text is analysed. */
 const TYPING = 10;
@@ -43,54 +45,69 @@ async function run() {
     start.scenes.push(...start.models.map(modelRow));
     byId("about").textContent = `fragbuf ${start.version}`;
     const link = await readLink(start);
+    showMissing([start.devices_problem, ...link.problems]);
     const scene = start.scenes.find(({ name }) => name === "marbles") ?? start.scenes[0];
     const text = (start.examples[0] ?? start.techniques[0]).text;
-    const store = createStore({ ...INITIAL, text, scene: sceneName(scene), ...link });
+    const store = createStore({ ...INITIAL, text, scene: sceneName(scene), ...link.fields });
     const page = await createPage(start, store);
     window.addEventListener("hashchange", async () => {
-        const changes = await readLink(start);
-        if (changes && changes.text !== undefined) page.restore(changes);
+        const { fields, problems } = await readLink(start);
+        showMissing(problems);
+        if (fields.text !== undefined) page.restore(fields);
     });
     page.analyse(store.value.text);
 }
 
-/** Returns the state of the address. A damaged link is reported, and the page starts without it. */
-async function readLink({ scenes }) {
+/** Returns the state of the address as far as this page has it, and in words what it does not have. A damaged link is no state. */
+async function readLink({ scenes, devices }) {
     try {
-        const fields = await decode(location.hash);
-        if (fields?.scene && !parseScene(scenes, fields.scene)) {
-            const message = fields.scene.startsWith("model:")
-                ? "The link shows a model of its sender: open the model here to see it."
-                : `The link names the scene ${fields.scene}, which this version does not have.`;
-            failing("link")(new Error(message));
+        const fields = (await decode(location.hash)) ?? {};
+        const problems = [];
+        const { scene, device } = fields;
+        if (scene && !parseScene(scenes, scene)) {
             delete fields.scene;
+            problems.push(
+                scene.startsWith("model:")
+                    ? "The link shows a model of its sender: open the model here to see it."
+                    : `The link names the scene ${scene}, which this version does not have.`,
+            );
         }
-        return fields ?? {};
+        if (device && ![INITIAL.device, ...devices].includes(device)) {
+            delete fields.device;
+            problems.push(`The link names the device ${device}, which the server does not list: choose another one.`);
+        }
+        return { fields, problems };
     } catch (error) {
-        failing("link")(error);
-        return {};
+        return { fields: {}, problems: [error.message] };
     }
+}
+
+/** Shows in the status line what is missing, in place of what the link before missed. */
+function showMissing(sentences) {
+    const given = sentences.filter(Boolean);
+    if (given.length > 0) status.fail(new Error(given.join(" ")), "link");
+    else status.recovered("link");
 }
 
 async function createPage(start, store) {
     /** The newest text without errors, and its description: what the panels show. */
     let valid = { text: "", description: null };
     let picture = null;
+    /** Whether the values of a link wait for the analysis of its text. */
+    let isRestoring = false;
 
     const editor = createEditor(byId("editor"), {
         text: store.value.text,
         api,
         failed,
         changed: (text) => store.set({ text }),
+        outdated: () => status.say("The text changed meanwhile: try again when the problems are up to date."),
     });
-    const apply = (edits) => {
-        const isApplied = editor.apply(edits, analysed);
-        if (!isApplied) status.say("The text changed meanwhile: try again when the problems are up to date.");
-        return isApplied;
-    };
-    let analysed = "";
     editor.setNames(start.techniques.map(({ key }) => key));
-    const problems = createProblems({ list: byId("problems-list"), heading: byId("problems-heading") }, { go: editor.go, apply });
+    const heading = byId("problems-heading");
+    const problems = createProblems({ list: byId("problems-list"), heading }, editor);
+    /** Marks that the problems are those of an earlier text. */
+    const setBusy = (is) => heading.setAttribute("aria-busy", String(is));
     const presets = createPresets(byId("preset"), byId("preset-note"), start, (text) => {
         values.forget({ values: false });
         editor.replace(text);
@@ -110,9 +127,11 @@ async function createPage(start, store) {
     );
     const values = createValues(elements("", ["k", "uniforms"]), store);
 
+    /** Returns a request of the picture. Values that the description does not have are those of a text with errors. */
     const request = () => {
-        const { scene, size, camera, uniforms, k, device } = store.value;
-        return { text: valid.text, scene, size, camera: camera ?? picture?.camera, uniforms, k, device };
+        const { scene, size, camera, device } = store.value;
+        const values = valuesOf(valid.description ?? { keep: null, uniforms: [] }, store.value);
+        return { text: valid.text, scene, size, camera: camera ?? picture?.camera, device, ...values };
     };
     const costs = createCosts(elements("", ["figures", "times", "fragments", "histogram", "predict", "tiers"]), {
         async predict() {
@@ -122,13 +141,12 @@ async function createPage(start, store) {
             return prediction;
         },
         check: (target) => {
-            byId("check-target").value = target;
             panels.show("check");
-            byId("check-form").requestSubmit();
+            check.start(target);
         },
         failed: failing("predict"),
     });
-    const axes = createAxes(byId("axes"), apply);
+    const axes = createAxes(byId("axes"), editor.apply);
     const check = createCheck(elements("check-", ["form", "target", "fragments", "k", "model", "run", "cancel", "result"]), {
         check: api.check,
         lines: (text) => templateLines(text, start.targets[0].name),
@@ -151,8 +169,8 @@ async function createPage(start, store) {
         failed,
     });
 
-    const showAxes = latest((signal, text) => api.analyse({ text, axes: true }, signal), {
-        done: ({ description }) => description && axes.show(description.axes ?? []),
+    const showAxes = latest(async (signal, text) => ({ text, answer: await api.analyse({ text, axes: true }, signal) }), {
+        done: ({ text, answer: { description } }) => description && axes.show(description.axes ?? [], text),
         failed,
     });
     const panels = createPanels(
@@ -176,10 +194,11 @@ async function createPage(start, store) {
         if (picture?.camera && store.value.camera !== picture.camera) store.set({ camera: { ...picture.camera } });
     }
     const draw = coalesced(() => {
-        if (!valid.description) return;
-        const { scene, uniforms, k, size, device } = store.value;
-        const changes = { text: valid.text, scene, uniforms, k, size, device, ...(restored && { camera: restored }) };
+        if (!valid.description || isRestoring) return;
+        const { camera, ...changes } = request();
+        if (restored) changes.camera = restored;
         restored = null;
+        const { size } = changes;
         const [width, height] = size;
         byId("stage").style.setProperty("--aspect", String(width / height));
         Promise.resolve(picture.set(changes)).catch((error) => showError(error.message));
@@ -189,29 +208,41 @@ async function createPage(start, store) {
     const analyse = latest(async (signal, text) => ({ text, answer: await api.analyse({ text }, signal) }), {
         done({ text: about, answer }) {
             if (!editor.show(answer.diagnostics, about)) return;
-            analysed = about;
+            const isRestored = isRestoring;
+            isRestoring = false;
             status.recovered("start");
             status.recovered("analysis");
-            problems.show(answer.diagnostics);
+            problems.show(answer.diagnostics, about);
+            setBusy(false);
             const { description } = answer;
             document.body.dataset.text = description ? "valid" : "invalid";
             check.outdate(about);
-            if (!description) return;
+            // The last description without errors is drawn with the scene and the size of a link whose text has errors.
+            if (!description) return void (isRestored && draw());
+            if (about !== valid.text) costs.outdate();
             if (description.technique !== valid.description?.technique || description.name !== valid.description?.name)
                 costs.clearTimes();
             valid = { text: about, description };
             values.show(description);
             costs.describe(description);
-            costs.setK(store.value.k);
+            costs.setK(request().k);
             check.describe(description.targets);
             text.describe(about, description.passes);
             if (panels.current === "axes") showAxes(about);
             draw();
             compare.update();
         },
-        failed: failing("analysis"),
+        failed(error) {
+            isRestoring = false;
+            setBusy(false);
+            failing("analysis")(error);
+        },
     });
-    const analyseSoon = debounced(TYPING, analyse);
+    const analyseRested = debounced(TYPING, analyse);
+    const analyseSoon = (text) => {
+        setBusy(true);
+        analyseRested(text);
+    };
     const writeLink = debounced(300, async () => {
         const fragment = await encode(store.value).catch(() => null);
         // A description that is too long for a link leaves the address without one.
@@ -225,21 +256,23 @@ async function createPage(start, store) {
             analyseSoon(state.text);
         }
         if (["scene", "uniforms", "k", "size", "device"].some((name) => changed.has(name))) draw();
-        if (changed.has("k")) costs.setK(state.k);
-        if (["scene", "camera", "size"].some((name) => changed.has(name))) costs.outdate();
+        if (changed.has("k")) costs.setK(request().k);
+        if (["scene", "camera", "size", "uniforms"].some((name) => changed.has(name))) costs.outdate();
         if (!changed.has("text")) compareSoon();
         writeLink();
     });
     byId("share").addEventListener("click", () => share(store.value));
 
     return {
-        analyse,
+        analyse: analyseSoon,
+        /** Shows the state of another link: its values are drawn with its text. */
         restore(changes) {
+            isRestoring = true;
             values.forget({ values: true });
-            restored = changes.camera ?? null;
-            store.set({ k: null, camera: null, ...changes });
+            restored = changes.camera ?? AUTO;
+            store.set({ k: null, camera: null, uniforms: {}, ...changes });
             editor.replace(changes.text);
-            draw();
+            analyseSoon(changes.text);
         },
     };
 }
@@ -293,19 +326,6 @@ function frameLine({ device, target, ms, frame_ms: whole, fragments, lost, trian
         Number.isFinite(k) && `k = ${k}`,
     ];
     return parts.filter(Boolean).join(" · ");
-}
-
-/** Returns a function that runs `action` once per turn, however often it is called. */
-function coalesced(action) {
-    let waiting = false;
-    return () => {
-        if (waiting) return;
-        waiting = true;
-        queueMicrotask(() => {
-            waiting = false;
-            action();
-        });
-    };
 }
 
 run().catch(failed);

@@ -2,7 +2,7 @@
  * The picture of a description: drawn by WebGPU in the page, or by a fallback, such as a device of the server, where the browser has no
  * WebGPU or the description needs more than it offers. The latest request wins; a frame is never drawn twice at the same time.
  */
-import { AUTO } from "./camera.mjs";
+import { AUTO, limited } from "./camera.mjs";
 import { WebGpuFrames } from "./webgpu_frames.mjs";
 
 /** The parts of a request. The device `auto` is WebGPU in the page, or what the fallback selects. */
@@ -34,7 +34,6 @@ class Picture {
     #drawing = null;
     /** Cancels the frame that is drawn. */
     #running = null;
-    #onCamera = () => {};
 
     constructor(canvas, report, fallback) {
         this.#canvas = canvas;
@@ -53,12 +52,6 @@ class Picture {
 
     set camera(camera) {
         this.set({ camera });
-        this.#onCamera(camera);
-    }
-
-    /** Is called when the pointer or the keyboard moves the camera. */
-    set onCamera(listener) {
-        this.#onCamera = listener;
     }
 
     /** Changes parts of the request and draws. Resolves when this request, or a later one, is shown. */
@@ -87,12 +80,18 @@ class Picture {
             const request = { ...this.#request };
             if (request.text === "") continue;
             this.#running = new AbortController();
+            const { signal } = this.#running;
             try {
-                const { image, statistics } = await this.#draw(request, this.#running.signal);
+                const { image, statistics } = await this.#draw(request, signal);
+                // WebGPU ends its frame all the same: the picture, and what is said of it, are those of the next one.
+                if (signal.aborted) {
+                    image.close?.();
+                    continue;
+                }
                 show(this.#canvas, image);
                 this.#report(statistics);
             } catch (error) {
-                if (error.name !== "AbortError") this.#report({ error: error.message });
+                if (!signal.aborted) this.#report({ error: error.message });
             }
         }
     }
@@ -104,6 +103,7 @@ class Picture {
             return await this.#webgpu.draw(request);
         } catch (error) {
             if (error.isLost) this.#webgpu = await WebGpuFrames.open();
+            signal.throwIfAborted();
             const { image, statistics } = await this.#fallback.draw(request, signal);
             return { image, statistics: { ...statistics, reason: error.message } };
         }
@@ -124,11 +124,11 @@ function show(canvas, image) {
 function listen(canvas, picture) {
     const turn = (right, up) => {
         const { azimuth, elevation, zoom } = picture.camera;
-        picture.camera = { azimuth: (azimuth + right + 360) % 360, elevation: Math.min(90, Math.max(-90, elevation + up)), zoom };
+        picture.camera = limited({ azimuth: azimuth + right, elevation: elevation + up, zoom });
     };
     const zoom = (factor) => {
         const camera = picture.camera;
-        picture.camera = { ...camera, zoom: Math.min(100, Math.max(0.1, camera.zoom * factor)) };
+        picture.camera = limited({ ...camera, zoom: camera.zoom * factor });
     };
     const keys = {
         ArrowLeft: () => turn(-5, 0),

@@ -9,13 +9,20 @@ import { problemBody } from "./editor.mjs";
 /**
  * Creates the list.
  * @param {{ list: HTMLElement, heading: HTMLElement }} elements
- * @param {{ go(place: { offset: number }): void, apply(edits: object[]): void }} editor
+ * @param {{ go(place: { offset: number }): void, fix(edits: object[], about: string): void }} editor
  */
 export function createProblems({ list, heading }, editor) {
     let before = "";
+    /** The text of the diagnostics. */
+    let newest = "";
+    const apply = (edits) => editor.fix(edits, newest);
     return {
-        /** @param {import("./editor.mjs").Diagnostic[]} diagnostics */
-        show(diagnostics) {
+        /**
+         * @param {import("./editor.mjs").Diagnostic[]} diagnostics
+         * @param {string} about their text
+         */
+        show(diagnostics, about) {
+            newest = about;
             // Equal diagnostics leave the list as it is, with the focus of its buttons. Edits of fixes are part of them.
             const now = JSON.stringify(diagnostics);
             if (now === before) return;
@@ -24,7 +31,7 @@ export function createProblems({ list, heading }, editor) {
             heading.dataset.state = diagnostics.some(isError) ? "error" : diagnostics.length > 0 ? "warning" : "good";
             fill(
                 list,
-                diagnostics.map((diagnostic) => entry(diagnostic, editor)),
+                diagnostics.map((diagnostic) => entry(diagnostic, editor.go, apply)),
             );
         },
     };
@@ -39,12 +46,12 @@ function title(diagnostics) {
     return [number(errors, "error"), number(warnings, "warning")].filter(Boolean).join(", ") || "No problems";
 }
 
-function entry(diagnostic, editor) {
+function entry(diagnostic, go, apply) {
     const { line, column, from, severity, file } = diagnostic;
     // A place in a file that the description names is not in the editor.
     const place = file
         ? element("span", { className: "place" }, `${file.split("/").pop()}:${line}:${column}`)
-        : button(`${line}:${column}`, () => editor.go({ offset: from }), {
+        : button(`${line}:${column}`, () => go({ offset: from }), {
               className: "place",
               "aria-label": `Go to line ${line}, column ${column}`,
           });
@@ -52,6 +59,6 @@ function entry(diagnostic, editor) {
         "li",
         { className: `problem ${severity}` },
         place,
-        element("div", {}, ...problemBody(diagnostic, editor.apply)),
+        element("div", {}, ...problemBody(diagnostic, apply)),
     );
 }

@@ -2,7 +2,7 @@
  * A slider with a number beside it, for one value.
  *
  * Input: a range and a value. Output: calls of `changed` with every value in the range of what it means. The slider's range grows with the
- * number; a number that cannot be read changes nothing.
+ * number; a number that cannot be read changes nothing. `show` shows a value from elsewhere, and leaves what is typed as it is.
  */
 import { element } from "./dom.mjs";
 
@@ -34,8 +34,9 @@ export function createSlider({ label, what = "", value, least, most, whole = fal
     };
     const show = (value) => {
         include(value);
-        range.value = String(value);
-        number.value = String(rounded(value));
+        if (rounded(Number(range.value)) !== value) range.value = String(value);
+        // "1.0" and "1" are the same value: a person may not have typed all of it.
+        if (number.valueAsNumber !== value) number.value = String(rounded(value));
     };
     range.addEventListener("input", () => {
         const value = rounded(Number(range.value));

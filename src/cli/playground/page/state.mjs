@@ -15,6 +15,15 @@
  * @property {string} device
  */
 
+/** The least and the greatest side of a picture: the server's CPU device draws the largest in seconds. */
+export const SIDES = [16, 2048];
+
+/** Returns whether a value that anybody may have written is a size of a picture. */
+export function isSize(value) {
+    const isSide = (side) => Number.isInteger(side) && side >= SIDES[0] && side <= SIDES[1];
+    return Array.isArray(value) && value.length === 2 && value.every(isSide);
+}
+
 /** The state of a page that is opened without a link. */
 export const INITIAL = Object.freeze({
     text: "",

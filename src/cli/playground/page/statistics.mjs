@@ -15,7 +15,7 @@ import { count } from "./dom.mjs";
  * @property {number | null} bytes
  * @property {number | null} triangles
  * @property {number | null} k
- * @property {{ generated: number, stored: number, culled: number, displaced: number, occluded: number } | null} fragments
+ * @property {{ generated: number, stored: number | null, culled: number, displaced: number, occluded: number } | null} fragments
  * @property {{ total: number, by_counter: Record<string, number> } | null} lost
  * @property {number | null} hit_ratio
  * @property {{ iterations: number, end: string }[]} loops
@@ -27,7 +27,8 @@ export function frameOf(reported) {
     const { bytes = null, triangles = null, k = null, target = null, loops } = reported;
     const lost = lossesOf(reported);
     const fragments = fragmentsOf(reported, lost);
-    const whole = fragments && fragments.generated > 0 ? fragments.stored / fragments.generated : null;
+    const isCounted = fragments?.generated > 0 && Number.isFinite(fragments.stored);
+    const ratio = isCounted ? fragments.stored / fragments.generated : null;
     return {
         device: reported.mode === "webgpu" ? "WebGPU in this page" : (reported.device ?? ""),
         target,
@@ -38,16 +39,16 @@ export function frameOf(reported) {
         k,
         fragments,
         lost,
-        hit_ratio: reported.hit_ratio ?? whole,
+        hit_ratio: reported.hit_ratio ?? ratio,
         loops: (Array.isArray(loops) ? loops : []).map(loopOf),
         messages: messagesOf(reported),
     };
 }
 
-/** Devices of the server time passes, WebGPU where the browser has timestamps. */
-function timesOf({ ms, times = {}, timed }) {
+/** Devices of the server time passes, WebGPU where the browser has timestamps. Without them there is the time of the frame alone. */
+function timesOf({ ms, times, timed }) {
     const passes = ms ?? timed?.passes ?? {};
-    const shown = Object.keys(passes).length > 0 ? passes : times;
+    const shown = Object.keys(passes).length > 0 ? passes : { frame: times?.frame };
     return Object.fromEntries(Object.entries(shown).filter(([, value]) => Number.isFinite(value)));
 }
 
@@ -60,12 +61,31 @@ function lossesOf({ lost }) {
     return Number.isFinite(lost?.total) ? lost : null;
 }
 
-function fragmentsOf({ fragments, counts }, lost) {
+/**
+ * Returns whether the counters of a frame give the number of its stored fragments: those generated, less those that were culled,
+ * displaced or lost. The server computes it from capabilities of the plan, which a manifest does not have. These manifests are left out:
+ *
+ * * A loop that draws the scene and resolves it, too, peels: an iteration counts as displaced what a later one keeps. Loops that draw
+ *   alone, such as those that write again until nothing changes, count every fragment once.
+ * * A pass over the scene with render targets stores by the depth or stencil test, which count nothing.
+ */
+export function countsStored({ steps }) {
+    const isDrawing = (step) => step.kind === "geometry";
+    const isPeeling = (step, index) => {
+        if (step.do !== "loop") return false;
+        const body = steps.slice(index, step.end);
+        return body.some(isDrawing) && body.some(({ kind }) => kind === "fullscreen");
+    };
+    return !steps.some(isPeeling) && !steps.some((step) => isDrawing(step) && step.state.targets.length > 0);
+}
+
+function fragmentsOf({ fragments, counts, counts_stored: isExact }, lost) {
     if (Number.isFinite(fragments?.generated)) return fragments;
     // With `counters: losses` the other counters of WebGPU are 0.
     if (!(counts?.generated > 0)) return null;
     const { generated, culled = 0, displaced = 0, occluded = 0 } = counts;
-    return { generated, culled, displaced, occluded, stored: generated - culled - displaced - (lost?.total ?? 0) };
+    const stored = isExact ? Math.max(generated - culled - displaced - (lost?.total ?? 0), 0) : null;
+    return { generated, culled, displaced, occluded, stored };
 }
 
 function messagesOf({ messages, reason, timed }) {

@@ -5,9 +5,8 @@
  * while the panel is shown.
  */
 import { latest } from "./api.mjs";
-import { codeView } from "./code_view.mjs";
-import { bytes, element, fill } from "./dom.mjs";
-import { createTabs } from "./tabs.mjs";
+import { element, fill } from "./dom.mjs";
+import { createFileTabs } from "./file_tabs.mjs";
 
 /**
  * @param {Record<"target" | "form" | "files" | "view" | "copy" | "download" | "note" | "where", any>} elements
@@ -24,9 +23,6 @@ export function createText(elements, { api, targets, go, say, failed }) {
     let first;
     let visible = false;
     let shownFor = "";
-    /** @type {any[]} */
-    let generated = [];
-    let code = null;
     fill(
         target,
         targets.map(({ name, language, summary }) =>
@@ -34,46 +30,19 @@ export function createText(elements, { api, targets, go, say, failed }) {
         ),
     );
 
-    const show = (path) => {
-        const file = generated.find((file) => file.path === path);
-        code?.destroy();
-        code = null;
-        where.textContent = "";
-        if (!file) return fill(view);
-        copy.disabled = typeof file.text !== "string";
-        if (typeof file.text !== "string") {
-            const size = file.bytes ?? Math.floor(((file.base64?.length ?? 0) * 3) / 4);
-            return fill(
-                view,
-                element("p", { className: "note padded" }, `${file.path} is binary, ${bytes(size)}: it is in the download.`),
-            );
-        }
-        fill(view);
-        code = codeView(view, file, go, (origin) => (where.textContent = origin));
-        return view;
-    };
-    const tabs = createTabs(files, show);
+    const shown = createFileTabs({ files, view, copy }, { go, at: (origin) => (where.textContent = origin), say, failed });
     const generate = latest((signal, text, target, form) => api.generate({ text, target, form }, signal), {
         done(answer) {
-            generated = answer.files;
-            const label = (file) => file.pass ?? file.path;
-            const twice = (file) => generated.filter((other) => label(other) === label(file)).length > 1;
-            const items = generated.map((file) => ({
-                key: file.path,
-                label: twice(file) ? file.path : label(file),
-                title: file.path,
-            }));
             note.textContent = "";
-            show(tabs.set(items, generated.find(({ pass }) => !tabs.current && pass === first)?.path));
+            shown.show(answer.files, first);
             view.classList.remove("outdated");
         },
         failed(error) {
             // A target that cannot have the description is no failure of the page.
             note.textContent = error.message;
-            generated = [];
             shownFor = "";
+            shown.show([]);
             view.classList.remove("outdated");
-            show(tabs.set([]));
         },
     });
     const update = () => {
@@ -85,15 +54,6 @@ export function createText(elements, { api, targets, go, say, failed }) {
     };
     target.addEventListener("change", update);
     form.addEventListener("change", update);
-    copy.addEventListener("click", async () => {
-        const file = generated.find((file) => file.path === tabs.current);
-        try {
-            await navigator.clipboard.writeText(file.text);
-            say(`Copied ${file.path}.`);
-        } catch {
-            failed(new Error("The browser does not allow the page to copy: select the text and copy it with the keyboard."));
-        }
-    });
     download.addEventListener("click", async () => {
         download.disabled = true;
         try {
@@ -121,7 +81,7 @@ export function createText(elements, { api, targets, go, say, failed }) {
 }
 
 /** Lets the browser save a file. */
-export function save(blob, name) {
+function save(blob, name) {
     const address = URL.createObjectURL(blob);
     const link = element("a", { href: address, download: name });
     link.click();

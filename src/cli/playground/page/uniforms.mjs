@@ -1,7 +1,7 @@
 /**
- * The values of a description's uniforms.
+ * The values of a description: k, and those of its uniforms.
  *
- * Input: the uniforms that a description declares, values of before. Output: a value for each. Nothing here sends or shows one.
+ * Input: what a description keeps and declares, values of before. Output: values that it has. Nothing here sends or shows one.
  */
 
 /** @typedef {{ name: string, type: string, count?: number }} Uniform */
@@ -10,6 +10,16 @@ const COMPONENTS = { f32: 1, u32: 1, i32: 1, vec2: 2, vec3: 3, vec4: 4 };
 
 /** The direction to the viewer in the first view of a scene. */
 const VIEWER = [0.45, 0.37, 0.81];
+
+/**
+ * Returns the values with which a description is drawn: those of the state as far as it has them.
+ * @param {{ keep: { k: number, capacity: number } | null, uniforms: Uniform[] }} description
+ * @param {{ k: number | null, uniforms: Record<string, number | number[]> }} state
+ */
+export function valuesOf({ keep, uniforms }, state) {
+    const k = keep && Math.min(state.k ?? keep.k, keep.capacity);
+    return { k, uniforms: uniformValues(uniforms, state.uniforms) };
+}
 
 /** Returns the number of components of a uniform. */
 export function components({ type }) {
@@ -30,7 +40,8 @@ export function uniformValues(uniforms, before) {
 
 function valueOf(uniform, index, uniforms, before) {
     const number = components(uniform);
-    if (before !== undefined && (Array.isArray(before) ? before.length : 1) === number) return before;
+    const fits = number === 1 ? Number.isFinite(before) : Array.isArray(before) && before.length === number;
+    if (fits) return before;
     if (number === 3) return [...VIEWER];
     if (number > 1) return Array(number).fill(0.5);
     if (uniform.type === "f32") return 0.5;

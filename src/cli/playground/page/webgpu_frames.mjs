@@ -7,6 +7,7 @@
 import { api } from "./api.mjs";
 import { orbit } from "./camera.mjs";
 import { lit, parseGeometry } from "./geometry.mjs";
+import { countsStored } from "./statistics.mjs";
 import { scoped } from "./webgpu/errors.mjs";
 import { FragmentBuffer } from "./webgpu/fragbuf.mjs";
 
@@ -30,7 +31,7 @@ export class WebGpuFrames {
     #buffer = { key: null };
     #mesh = { key: null };
     #target = null;
-    /** The last description that the target cannot have, with the reason. */
+    /** The last request that cannot be drawn, with the reason: a description without passes, or one whose memory does not fit. */
     #rejected = null;
 
     /** Opens a device; null if the browser has none. */
@@ -46,31 +47,30 @@ export class WebGpuFrames {
 
     /** Draws a request. Returns an image and the statistics of the frame. */
     async draw(request) {
-        if (this.#rejected?.text === request.text) throw this.#rejected.error;
+        if (this.#rejected?.covers(request)) throw Object.assign(this.#rejected.error, { isLost: this.isLost });
         try {
-            const begin = performance.now();
             const mesh = await this.#meshOf(request);
             const buffer = await this.#bufferOf(request);
-            const [drawing, { viewProjection, eye }] = [
-                performance.now(),
-                orbit(mesh.geometry, request.size[0] / request.size[1], request.camera),
-            ];
+            const begin = performance.now();
+            const { viewProjection, eye } = orbit(mesh.geometry, request.size[0] / request.size[1], request.camera);
             this.#light(mesh, eye);
             const report = await buffer.render({
                 target: this.#target.texture,
                 clear: BACKGROUND,
                 viewProjection,
                 uniforms: request.uniforms,
-                objects: mesh.geometry.objects.map(({ box }) => box),
+                objects: mesh.boxes,
                 draw: (pass, { objects }) => draw(pass, mesh, objects),
             });
             const read = [this.#read(request.size), buffer.counters(), buffer.times()];
             const [image, { lost, counts }, timed] = await Promise.all(read);
-            const times = { frame: performance.now() - drawing, prepare: drawing - begin };
-            const causes = this.#buffer.losses.map((name) => [name, counts[name] ?? 0]);
-            const losses = { total: lost, by_counter: Object.fromEntries(causes) };
+            const times = { frame: performance.now() - begin };
+            const { losses, counts_stored } = this.#buffer;
+            const causes = losses.map((name) => [name, counts[name] ?? 0]);
+            const sum = { total: lost, by_counter: Object.fromEntries(causes) };
             const bytes = buffer.allocatedBytes;
-            return { image, statistics: { mode: "webgpu", times, timed, bytes, lost: losses, counts, ...report } };
+            const counted = { lost: sum, counts, counts_stored };
+            return { image, statistics: { mode: "webgpu", times, timed, bytes, ...counted, ...report } };
         } catch (error) {
             this.#buffer.buffer?.destroy();
             this.#buffer = { key: null };
@@ -93,7 +93,9 @@ export class WebGpuFrames {
         this.#device.queue.writeBuffer(indices, 0, geometry.indices);
         this.#mesh.vertices?.destroy();
         this.#mesh.indices?.destroy();
-        return (this.#mesh = { key, geometry, vertices, indices, eye: null });
+        // The buffer copies boxes to the device when it gets another array.
+        const boxes = geometry.objects.map(({ box }) => box);
+        return (this.#mesh = { key, geometry, boxes, vertices, indices, eye: null });
     }
 
     /** Lights the vertices from the eye. */
@@ -103,29 +105,41 @@ export class WebGpuFrames {
         this.#device.queue.writeBuffer(mesh.vertices, 0, lit(mesh.geometry, eye));
     }
 
-    async #bufferOf({ text, size, k }) {
+    async #bufferOf(request) {
+        const { text, size, k } = request;
         const symbols = k === null ? {} : { k };
         if (this.#buffer.key !== text) {
             const { manifest, files } = await this.#generated(text);
             const loadFile = (path) => files.find((file) => file.path === path).text;
             this.#buffer.buffer?.destroy();
             this.#buffer = { key: null };
-            await this.#resize(size);
-            const buffer = await FragmentBuffer.create(this.#device, manifest, loadFile, {
-                size,
-                format: FORMAT,
-                symbols,
-                times: true,
-                onLoss() {},
+            const options = { size, format: FORMAT, symbols, times: true, onLoss() {} };
+            const buffer = await this.#remembered(request, async () => {
+                await this.#resize(size);
+                return FragmentBuffer.create(this.#device, manifest, loadFile, options);
             });
             const losses = manifest.counters.filter((counter) => counter.is_loss).map(({ name }) => name);
-            this.#buffer = { key: text, buffer, size, k, losses };
+            this.#buffer = { key: text, buffer, size, k, losses, counts_stored: countsStored(manifest) };
         }
         const { buffer } = this.#buffer;
-        if ((await this.#resize(size)) || String(this.#buffer.size) !== String(size)) await buffer.resize(size);
-        if (k !== null && this.#buffer.k !== k) await buffer.setSymbols(symbols);
+        await this.#remembered(request, async () => {
+            if ((await this.#resize(size)) || String(this.#buffer.size) !== String(size)) await buffer.resize(size);
+            if (k !== null && this.#buffer.k !== k) await buffer.setSymbols(symbols);
+        });
         Object.assign(this.#buffer, { size, k });
         return buffer;
+    }
+
+    /** Runs what compiles and allocates. Remembers a failure, which the same description, size and k would repeat. */
+    async #remembered({ text, size, k }, run) {
+        try {
+            return await run();
+        } catch (error) {
+            const key = JSON.stringify([text, size, k]);
+            const covers = (request) => JSON.stringify([request.text, request.size, request.k]) === key;
+            this.#rejected = { covers, error };
+            throw error;
+        }
     }
 
     /** Returns the passes of a description, and remembers one that has none. */
@@ -133,7 +147,7 @@ export class WebGpuFrames {
         try {
             return await api.generate({ text, target: TARGET, form: "program" });
         } catch (error) {
-            if (error.status === 422) this.#rejected = { text, error };
+            if (error.status === 422) this.#rejected = { covers: (request) => request.text === text, error };
             throw error;
         }
     }

@@ -7,11 +7,11 @@
  * The form is that of a query: `#technique=kb&capacity=8&k=5&sort=walk&overflow=drop&scene=marbles&size=480x360&camera=28.81,21.52,1`.
  */
 
+import { limited } from "./camera.mjs";
+import { isSize } from "./state.mjs";
+
 /** The names of what is chosen from lists. */
 const NAMES = ["technique", "sort", "overflow", "scene"];
-
-/** The greatest side of a picture. */
-const LARGEST = 2048;
 
 /** Returns the fragment for a state, without `#`. */
 export function write({ technique, capacity, k, sort, overflow, scene, size, camera }) {
@@ -42,13 +42,10 @@ export function read(fragment) {
         if (Number.isInteger(value) && value > 0) fields[name] = value;
     }
     const size = /^(\d{1,4})x(\d{1,4})$/.exec(given.get("size") ?? "")?.slice(1).map(Number);
-    if (size?.every((side) => side > 0 && side <= LARGEST)) fields.size = size;
+    if (isSize(size)) fields.size = size;
     const camera = (given.get("camera") ?? "").split(",").map(Number);
-    if (given.has("camera") && camera.length === 3 && camera.every(Number.isFinite)) fields.camera = orbit(camera);
+    const [azimuth, elevation, zoom] = camera;
+    const isCamera = given.has("camera") && camera.length === 3 && camera.every(Number.isFinite);
+    if (isCamera) fields.camera = limited({ azimuth, elevation, zoom });
     return fields;
-}
-
-function orbit([azimuth, elevation, zoom]) {
-    const within = (value, least, most) => Math.min(most, Math.max(least, value));
-    return { azimuth: azimuth % 360, elevation: within(elevation, -90, 90), zoom: within(zoom, 0.1, 100) };
 }

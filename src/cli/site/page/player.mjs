@@ -9,7 +9,7 @@ import { api } from "./api.mjs";
 import { createAxes } from "./axes.mjs";
 import { CHOSEN, axes, legal, variantOf } from "./choices.mjs";
 import { createValues, createView } from "./controls.mjs";
-import { byId, bytes, count, debounced, element, fill, milliseconds } from "./dom.mjs";
+import { byId, bytes, coalesced, count, debounced, element, fill, milliseconds } from "./dom.mjs";
 import { inline } from "./markdown.mjs";
 import { createPasses } from "./passes.mjs";
 import { createPicture } from "./picture.mjs";
@@ -58,13 +58,13 @@ async function createPlayer(site, store) {
         return element("option", { value: key }, drawn ? name : `${name} (picture alone)`);
     };
     fill(select, site.techniques.map(option));
-    select.addEventListener("change", () => choose({ ...chosen(store.value), technique: select.value, k: null }));
+    select.addEventListener("change", () => tryChoice({ ...chosen(store.value), technique: select.value, k: null }));
     const view = { scene: byId("scene"), note: byId("scene-note"), width: byId("width"), height: byId("height") };
     // Generated scenes have their default parameters, and WebGPU is the only device.
     const unused = { parameters: element("div"), device: element("select") };
     createView({ ...view, ...unused }, { scenes: site.scenes, devices: [] }, store);
     const values = createValues({ k: byId("k"), uniforms: element("div") }, store);
-    const table = createAxes(byId("axes"), ([change]) => choose({ ...chosen(store.value), ...change }));
+    const table = createAxes(byId("axes"), ([change]) => tryChoice({ ...chosen(store.value), ...change }));
     const passes = createPasses(
         { files: byId("files"), view: byId("view"), copy: byId("copy"), note: byId("passes-note") },
         { api, say: status.say, failed },
@@ -85,12 +85,28 @@ async function createPlayer(site, store) {
         show();
     }
 
+    /** Shows a technique as `choose` does. What cannot be read is reported, and the pickers show again what is drawn. */
+    function tryChoice(given) {
+        const turn = newest + 1;
+        choose(given).catch((error) => {
+            if (turn !== newest) return;
+            failed(error);
+            select.value = store.value.technique;
+            showAxes();
+        });
+    }
+
+    function showAxes() {
+        const isDrawn = technique && !technique.unsupported;
+        table.show(isDrawn ? axes(technique, store.value) : []);
+    }
+
     /** Shows the variant of the state, and draws it. */
     function show() {
         const state = store.value;
         const variant = technique.unsupported ? { text: technique.text } : variantOf(technique, state);
         describe(technique, variant);
-        table.show(technique.unsupported ? [] : axes(technique, state));
+        showAxes();
         values.show({ keep: variant.keep ?? null, uniforms: [] });
         for (const id of ["k", "cost", "size"]) byId(id).hidden = Boolean(technique.unsupported);
         passes.show(variant, technique.unsupported).then(() => status.recovered("player"), failed);
@@ -98,13 +114,16 @@ async function createPlayer(site, store) {
         draw();
     }
 
-    function draw(changes = {}) {
+    /** The camera of a link, until it is drawn. */
+    let restored = null;
+    const draw = coalesced(() => {
         const { scene, size, k } = store.value;
         const text = technique.unsupported ? technique.text : variantOf(technique, store.value).text;
         if (byId("frame").textContent.trim() === "") byId("frame").textContent = "drawing …";
         byId("stage").style.setProperty("--aspect", String(size[0] / size[1]));
-        picture.set({ text, scene, size, k, ...changes }).catch(failed);
-    }
+        picture.set({ text, scene, size, k, ...(restored && { camera: restored }) }).catch(failed);
+        restored = null;
+    });
 
     function report(result) {
         if (result.error) return note(result.error, true);
@@ -125,6 +144,7 @@ async function createPlayer(site, store) {
     });
     const restore = async () => {
         const given = read(location.hash);
+        status.recovered("link");
         const { techniques, scenes } = site;
         const has = (list, field, name) => given[name] === undefined || list.some((row) => row[field] === given[name]);
         for (const [list, field, name] of [
@@ -136,9 +156,9 @@ async function createPlayer(site, store) {
             delete given[name];
         }
         values.forget({ values: true });
-        if (given.camera) store.set({ camera: given.camera });
+        restored = given.camera ?? null;
+        if (restored) store.set({ camera: restored });
         await choose({ technique: store.value.technique, ...given });
-        if (given.camera) draw({ camera: given.camera });
     };
     window.addEventListener("hashchange", () => restore().catch(failed));
     byId("share").addEventListener("click", () => share(store.value));

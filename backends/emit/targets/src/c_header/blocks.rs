@@ -2,10 +2,12 @@
 
 use std::fmt::Write;
 
+use fragbuf_codegen::Form;
 use fragbuf_model::{UniformBlock, UniformType};
 
 use super::Writer;
 use super::names::{Names, string};
+use crate::manifest::{CAMERA, FRAME, UNIFORMS};
 
 /// The type of a member, and the number of elements of its array; `None`: no array.
 fn c_type(kind: UniformType) -> (&'static str, Option<u32>) {
@@ -35,12 +37,15 @@ impl Writer<'_> {
         let uniforms = &self.plan.variant.uniforms;
         let user: Vec<(String, UniformType)> =
             uniforms.iter().map(|uniform| (uniform.name.value.clone(), uniform.kind.value)).collect();
-        let mut rows = vec![self.block("frame", 0, members(&frame))];
+        let mut rows = vec![self.block("frame", FRAME, members(&frame))];
         if !user.is_empty() {
-            rows.push(self.block("uniforms", 1, members(&user)));
+            rows.push(self.block("uniforms", UNIFORMS, members(&user)));
         }
-        let matrix = Member { name: "view_projection".to_owned(), kind: "float", elements: Some(16), offset: 0 };
-        rows.push(self.block("camera", 2, (vec![matrix], 64)));
+        // In module form, the vertex stage is the caller's.
+        if self.form == Form::Program {
+            let matrix = Member { name: "view_projection".to_owned(), kind: "float", elements: Some(16), offset: 0 };
+            rows.push(self.block("camera", CAMERA, (vec![matrix], 64)));
+        }
         [self.table("struct fragbuf_block", "blocks", &rows), self.vertex_inputs()]
     }
 
@@ -77,6 +82,9 @@ impl Writer<'_> {
     }
 
     fn vertex_inputs(&mut self) -> (String, usize) {
+        if self.form != Form::Program {
+            return self.table("struct fragbuf_vertex_input", "vertex_inputs", &[]);
+        }
         let inputs = self.plan.variant.attributes.iter().filter(|attribute| attribute.name.value != "depth");
         let others = inputs.map(|attribute| (attribute.name.value.clone(), attribute.format.value.wgsl_type()));
         let all: Vec<(String, &str)> = std::iter::once(("position".to_owned(), "vec3<f32>")).chain(others).collect();

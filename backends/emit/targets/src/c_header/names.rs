@@ -79,7 +79,8 @@ pub(super) fn comment(text: &str) -> String {
         |letter: char| matches!(u32::from(letter), 0x061c | 0x200e | 0x200f | 0x202a..=0x202e | 0x2066..=0x2069);
     let plain = |letter: char| if letter.is_control() || is_direction(letter) { ' ' } else { letter };
     let text: String = text.chars().map(plain).collect();
-    text.replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?").replace('\\', "/")
+    // First the backslash, because it becomes a part of the others.
+    text.replace('\\', "/").replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?")
 }
 
 #[cfg(test)]
@@ -133,6 +134,7 @@ mod tests {
     #[test]
     fn strings_and_comments_cannot_end_early() {
         assert_eq!(string("a\"b\\c??/\n§"), r#""a\"b\\c\?\?/\012\302\247""#);
+        assert_eq!(comment("a *\\ b \\* c"), "a * / b / * c");
         assert_eq!(comment("a */ b /* c ??/\n\u{202e}§\\"), "a * / b / * c ? ?/  §/");
     }
 }

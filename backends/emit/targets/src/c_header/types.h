@@ -46,7 +46,7 @@ struct fragbuf_resource {
     enum fragbuf_format format;
     enum fragbuf_init init;
     uint32_t is_persistent; /* 1: its content is needed in the next frame */
-    fragbuf_formula bytes;  /* may be 0, where an API needs at least 16; of a texture: of its texels */
+    fragbuf_formula bytes;  /* may be 0, where an API needs at least 4; of a texture: of its texels */
 };
 
 /* A uniform block. */

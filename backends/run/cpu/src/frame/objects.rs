@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use fragbuf_codegen::PassId;
-use fragbuf_frame::{box_around, box_vertices, grown_box};
+use fragbuf_frame::{box_around, box_vertices, first_of_query, grown_box};
 
 use super::Frame;
 
@@ -22,7 +22,7 @@ impl Frame<'_> {
     /// Whether a query has dropped an object in this slice.
     pub(super) fn is_dropped(&self, query: PassId, object: usize) -> bool {
         let plan = &self.code.plan;
-        let first = plan.pass_id(&plan.passes[query.0].name).unwrap_or(query);
+        let first = first_of_query(plan, query);
         let on_device = self.conditions.dropped.get(&first).and_then(|dropped| dropped.get(object));
         self.cursor.is_dropped(plan, query, object) || on_device.is_some_and(|dropped| *dropped)
     }

@@ -1,7 +1,7 @@
 //! The updates of a plan's loops and queries, as words for the compute pass.
 
 use fragbuf_codegen::{Action, LoopId, LoopUntil, PassId, Plan};
-use fragbuf_frame::Condition;
+use fragbuf_frame::{Condition, first_of_query};
 use fragbuf_templates::vocabulary::Objects;
 
 /// The bytes from one update to the next in the uniform buffer.
@@ -30,7 +30,7 @@ pub(crate) fn updates(plan: &Plan) -> Vec<Update> {
                 updates.extend([false, true].map(|is_last| Update::End { id: *id, until: until(id), is_last }));
             }
             Action::Pass(pass) if plan.passes[pass.0].objects == Objects::Boxes => {
-                let query = plan.pass_id(&plan.passes[pass.0].name).unwrap_or(*pass);
+                let query = first_of_query(plan, *pass);
                 updates.push(Update::Objects { query, around: around.last().copied() });
             }
             _ => {}
