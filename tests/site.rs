@@ -8,6 +8,8 @@ use std::sync::LazyLock;
 
 use serde_json::Value;
 
+use crate::playground::{listed_in, run_at, scenarios_of};
+
 /// One with k and a lock, one that keeps every fragment, and one that browsers cannot run.
 const TECHNIQUES: [&str; 3] = ["kplus_array", "ab_ll", "kb_mdt64"];
 
@@ -146,7 +148,9 @@ fn variants_are_what_generate_writes() {
     let technique = json("data/kplus_array.json");
     let piece = |number: &Value| &technique["pieces"][number.as_u64().unwrap() as usize];
     let variants = technique["variants"].as_array().unwrap().iter().filter(|variant| variant["text"].is_string());
+    let mut compared = 0;
     for variant in variants.step_by(17) {
+        compared += 1;
         let folder = folder("generated");
         std::fs::create_dir_all(&folder).unwrap();
         let text = variant["text"].as_str().unwrap();
@@ -168,6 +172,7 @@ fn variants_are_what_generate_writes() {
         let expected: Value = serde_json::from_str(&read(&passes.join("manifest.json"))).unwrap();
         assert_eq!(manifest, expected, "{text}");
     }
+    assert!(compared >= 5, "{compared} variants");
 }
 
 /// The technique's page has what `show --page` prints, and its command draws its picture.
@@ -223,21 +228,8 @@ fn mistakes_are_errors_with_what_to_do() {
     }
 }
 
-/// Runs scenarios in one browser; each has a page of its own.
 fn run(scenarios: &[&str]) {
-    let folder = root().join("tests/playground");
-    let is_installed = folder.join("node_modules/playwright-core").exists();
-    assert!(is_installed, "Playwright must be installed: run `npm ci` in tests/playground (see README)");
-    let mut command = Command::new("node");
-    command.arg("drive.mjs").arg(&*SITE).args(scenarios).current_dir(folder);
-    // Other tests use the machine at the same time.
-    command.env("PATIENCE", "180000").env("FRAGBUF", env!("CARGO_BIN_EXE_fragbuf"));
-    let output = command.output();
-    let output = output.unwrap_or_else(|error| panic!("Node must be installed, Debian's package is `nodejs`: {error}"));
-    let [printed, errors] = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
-    assert!(output.status.success(), "{}\n{printed}\n{errors}", output.status);
-    let ran = printed.lines().filter(|line| line.starts_with("ok")).count();
-    assert_eq!(ran, scenarios.len(), "{printed}");
+    run_at(&*SITE, scenarios);
 }
 
 #[test]
@@ -258,6 +250,7 @@ fn the_player_draws_by_webgpu() {
         "the_player_draws_what_the_cpu_device_draws",
         "choices_change_the_picture_or_keep_it",
         "an_illegal_choice_has_its_reason",
+        "a_technique_that_cannot_be_read_is_reported",
         "passes_are_shown_and_copied",
         "the_player_works_by_keyboard_alone",
         "a_link_restores_the_player",
@@ -267,19 +260,15 @@ fn the_player_draws_by_webgpu() {
 /// Every scenario of the modules is listed above, and every file of the page is in the binary.
 #[test]
 fn every_scenario_runs_and_every_file_is_in_the_site() {
-    let listed = include_str!("site.rs");
-    for module in ["site", "player"] {
-        let text = read(&root().join(format!("tests/playground/{module}.mjs")));
-        let names = text.lines().filter_map(|line| line.strip_prefix("export async function ")?.split('(').next());
-        for name in names {
-            assert!(listed.contains(&format!("\"{name}\"")), "{name} of {module}.mjs does not run");
-        }
-    }
+    assert_eq!(scenarios_of(&["site", "player"]), listed_in(include_str!("site.rs")));
     let player = read(&root().join("src/cli/site/player.rs"));
+    let mut names = 0;
     for entry in std::fs::read_dir(root().join("src/cli/site/page")).unwrap() {
+        names += 1;
         let name = entry.unwrap().file_name().into_string().unwrap();
         assert!(name == "README.md" || player.contains(&format!("\"page/{name}\"")), "{name}");
     }
+    assert!(names > 10, "{names} files");
 }
 
 /// No text becomes markup in the player.

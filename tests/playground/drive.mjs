@@ -4,8 +4,10 @@
  * Input: the address that `fragbuf playground` prints, or the folder that `fragbuf site` wrote, which is then served. Output: a line per
  * scenario; the exit status is 1 if one failed. Every scenario has a page of its own.
  */
-import * as picture from "./picture.mjs";
+import * as links from "./links.mjs";
 import { WEBGPU, close, launch, open } from "./page.mjs";
+import * as panels from "./panels.mjs";
+import * as picture from "./picture.mjs";
 import * as player from "./player.mjs";
 import * as site from "./site.mjs";
 import { serve } from "./static_server.mjs";
@@ -16,7 +18,7 @@ import * as whole from "./whole.mjs";
 const [given, ...names] = process.argv.slice(2);
 const served = given.startsWith("http:") ? null : await serve(given);
 const address = served?.address ?? (given.endsWith("/") ? given : `${given}/`);
-const all = served ? { ...site, ...player } : { ...typing, ...picture, ...whole, ...webgpu };
+const all = served ? { ...site, ...player } : { ...typing, ...picture, ...panels, ...links, ...whole, ...webgpu };
 /** The scenarios of a site begin at the player. */
 const first = served ? { hash: "play/index.html" } : {};
 const unknown = names.filter((name) => !(name in all));
@@ -26,7 +28,7 @@ if (unknown.length > 0) throw new Error(`no scenario ${unknown.join(", ")}`);
 const EXPECTED = {
     an_error_of_a_request_is_shown: [/503/],
     a_model_is_opened_and_dropped: [/422/],
-    an_answer_that_comes_too_late_is_dropped: [/ERR_ABORTED|ERR_FAILED/],
+    a_technique_that_cannot_be_read_is_reported: [/503/],
 };
 
 /** The browsers with and without WebGPU, opened when they are needed. */

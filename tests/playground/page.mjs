@@ -1,8 +1,8 @@
 /**
  * What a person sees and does at the page, for the scenarios.
  *
- * Input: the address of a server, of the playground or of a site. Output: pages in Chromium, and what they show. Everything is found by what a person perceives: roles,
- * names, text; or by the places of CodeMirror's marks.
+ * Input: the address of a server, of the playground or of a site. Output: pages in Chromium, and what they show. Everything is found by what a
+ * person perceives: roles, names, text; or by the places of CodeMirror's marks.
  */
 import assert from "node:assert/strict";
 import { chromium } from "playwright-core";
@@ -83,16 +83,48 @@ export async function write(page, value) {
 
 /** Waits until the diagnostics of the newest text are shown: their number of errors and warnings, in words. */
 export async function heading(page, expected) {
-    await page.locator("#problems-heading").filter({ hasText: expected }).waitFor();
+    await page.locator("#problems-heading[aria-busy=false]").filter({ hasText: expected }).waitFor();
 }
 
-/** Waits until a picture is drawn whose pixels differ from `before`. Returns its pixels. */
+/** The names of the panels' tabs. */
+export const PANELS = ["Costs", "Axes", "Check it", "Text", "Side by side"];
+
+/** Opens a panel by its tab. Returns it. */
+export async function openTab(page, name) {
+    await page.getByRole("tab", { name, exact: true }).click();
+    const panel = page.getByRole("tabpanel", { name, exact: true });
+    await panel.waitFor();
+    return panel;
+}
+
+/** Waits until the status line has these words. */
+export const status = (page, words) => page.getByRole("status").filter({ hasText: words }).waitFor();
+
+/** Copies the link, which has the state that the page has now. Returns it. */
+export async function copyLink(page) {
+    await page.evaluate(() => navigator.clipboard.writeText(""));
+    await page.getByRole("button", { name: "Copy link" }).click();
+    // The status line may still have the message about the copy before.
+    await status(page, "Copied the link");
+    const link = await page.evaluate(async () => {
+        for (let tries = 0; tries < 100; tries += 1) {
+            const copied = await navigator.clipboard.readText();
+            if (copied) return copied;
+            await new Promise(requestAnimationFrame);
+        }
+        return "";
+    });
+    assert.match(link, /^http.*#/);
+    return link;
+}
+
+/** Waits until the newest picture is drawn, and its pixels differ from `before`. Returns its pixels. */
 export async function drawn(page, before = "") {
     const found = await page.waitForFunction(
         (before) => {
             const canvas = document.querySelector("#picture");
             const frame = document.querySelector("#frame").textContent.trim();
-            if (!frame || canvas.width < 2) return false;
+            if (!frame || canvas.width < 2 || canvas.getAttribute("aria-busy") !== "false") return false;
             const pixels = canvas.toDataURL();
             return pixels !== before && pixels;
         },
@@ -104,6 +136,48 @@ export async function drawn(page, before = "") {
 
 /** Returns the pixels of the picture as they are. */
 export const pixels = (page) => page.evaluate(() => document.querySelector("#picture").toDataURL());
+
+/** Waits until nothing is drawn. */
+export const settled = (page) => page.locator("#picture[aria-busy=false]").waitFor();
+
+/** Runs in the page. Returns the number of its picture's pixels that differ from those of a data URL by more than 2 of 255. */
+export async function compare(url) {
+    const letters = atob(url.split(",")[1]);
+    const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
+    const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }), { colorSpaceConversion: "none" });
+    const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+    const context = canvas.getContext("2d");
+    context.drawImage(bitmap, 0, 0);
+    const expected = context.getImageData(0, 0, canvas.width, canvas.height).data;
+    const shown = document.querySelector("#picture");
+    const found = shown.getContext("2d").getImageData(0, 0, shown.width, shown.height).data;
+    if (found.length !== expected.length)
+        throw new Error(`${shown.width} × ${shown.height}, not ${canvas.width} × ${canvas.height}`);
+    let [different, covered] = [0, 0];
+    for (let at = 0; at < found.length; at += 4) {
+        const largest = Math.max(...[0, 1, 2].map((channel) => Math.abs(found[at + channel] - expected[at + channel])));
+        different += largest > 2 ? 1 : 0;
+        covered += [0, 1, 2].some((channel) => expected[at + channel] !== expected[channel]) ? 1 : 0;
+    }
+    return { different, covered, all: found.length / 4 };
+}
+
+/** Fails unless the picture has the pixels of a data URL, except for few on edges, and covers a part of the canvas. */
+export async function assertPicture(page, url, what) {
+    const { different, covered, all } = await page.evaluate(compare, url);
+    assert.ok(covered > all / 20, `${covered} of ${all} pixels are covered: ${what}`);
+    assert.ok(different < all / 200, `${different} of ${all} pixels differ: ${what}`);
+}
+
+/** Returns the picture that the CPU device of the server draws of the state that the page has now, as a data URL. */
+export async function cpuPicture(page) {
+    const { hash } = new URL(await copyLink(page));
+    return page.evaluate(async (hash) => {
+        const [{ decode }, { api }] = await Promise.all(["/link.mjs", "/api.mjs"].map((path) => import(path)));
+        const { png } = await api.render({ ...(await decode(hash)), device: "cpu" });
+        return `data:image/png;base64,${png}`;
+    }, hash);
+}
 
 /** Presses a key until an element with this accessible name has the focus. */
 export async function tabTo(page, name, { key = "Tab", most = 80 } = {}) {
@@ -119,49 +193,4 @@ export async function tabTo(page, name, { key = "Tab", most = 80 } = {}) {
         passed.push(focused.trim().slice(0, 30));
     }
     assert.fail(`Tab never reaches ${name}; it passes ${passed.join(" | ")}`);
-}
-
-/** Runs in the page. Returns visible texts whose contrast with their ground is less than 4.5. */
-export function faint() {
-    const canvas = new OffscreenCanvas(1, 1).getContext("2d", { willReadFrequently: true });
-    const rgba = (color) => {
-        canvas.clearRect(0, 0, 1, 1);
-        canvas.fillStyle = color;
-        canvas.fillRect(0, 0, 1, 1);
-        const [r, g, b, a] = canvas.getImageData(0, 0, 1, 1).data;
-        return [r, g, b, a / 255];
-    };
-    const over = (top, bottom) => top.slice(0, 3).map((value, index) => value * top[3] + bottom[index] * (1 - top[3]));
-    const ground = (element) => {
-        if (!element) return rgba(getComputedStyle(document.documentElement).backgroundColor).slice(0, 3);
-        const color = rgba(getComputedStyle(element).backgroundColor);
-        return color[3] === 1 ? color.slice(0, 3) : over(color, ground(element.parentElement));
-    };
-    const luminance = (color) => {
-        const [r, g, b] = color.map((value) =>
-            value / 255 <= 0.04045 ? value / 255 / 12.92 : ((value / 255 + 0.055) / 1.055) ** 2.4,
-        );
-        return 0.2126 * r + 0.7152 * g + 0.0722 * b;
-    };
-    const found = [];
-    const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
-    while (walker.nextNode()) {
-        const element = walker.currentNode.parentElement;
-        if (!walker.currentNode.textContent.trim() || !element.checkVisibility({ visibilityProperty: true })) continue;
-        // What cannot be used, and what is about an earlier text, is exempt.
-        if (
-            element.closest(
-                ":disabled, .outdated, option, svg, noscript, .skip, .unseen, [aria-hidden=true], body[data-text=invalid] .panel",
-            )
-        )
-            continue;
-        const back = ground(element);
-        const [light, dark] = [luminance(over(rgba(getComputedStyle(element).color), back)), luminance(back)].sort(
-            (a, b) => b - a,
-        );
-        const contrast = (light + 0.05) / (dark + 0.05);
-        if (contrast < 4.5)
-            found.push(`${contrast.toFixed(2)}: ${element.className} ${walker.currentNode.textContent.slice(0, 40)}`);
-    }
-    return found;
 }

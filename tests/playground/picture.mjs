@@ -1,8 +1,8 @@
 /**
- * Scenarios of the picture, its controls and what it costs.
+ * Scenarios of the picture and its controls.
  */
 import assert from "node:assert/strict";
-import { close, drawn, heading, open, pixels, text, write } from "./page.mjs";
+import { assertPicture, close, copyLink, cpuPicture, drawn, heading, open, pixels, status, text, write } from "./page.mjs";
 
 const PLANE = "buffer Mine from kplus_array {\n    uniform { plane: f32 }\n    keep 6;\n    where |f, u| f.depth > u.plane;\n}\n";
 
@@ -38,6 +38,7 @@ export async function scene_and_size_change_the_picture(page) {
         return width === 200 && height === 100;
     });
     await drawn(page, cubes);
+    await assertPicture(page, await cpuPicture(page), "200 × 100");
 }
 
 /** A preset is the text of a technique or an example. */
@@ -55,117 +56,6 @@ export async function a_preset_replaces_the_description(page) {
     assert.match(await page.locator("#k").textContent(), /every fragment/);
     await write(page, PLANE);
     assert.equal(await preset.locator("option:checked").textContent(), "Your own description");
-}
-
-/** Costs are figures of this frame: memory, passes, times, fragments. */
-export async function costs_are_those_of_the_frame(page) {
-    const before = await pixels(page);
-    await write(page, "buffer Mine from kplus_array {\n    keep 2;\n    counters: all;\n}\n");
-    await heading(page, "No problems");
-    await drawn(page, before);
-    const figures = page.locator("#figures");
-    assert.match(await figures.textContent(), /words per pixel.*\d/);
-    assert.match(await figures.textContent(), /this frame[\d.]+ [KM]iB/);
-    const generated = await page.locator("#fragments li", { hasText: "generated" }).textContent();
-    assert.match(generated, /[\d,]{4,}/);
-    await page.getByRole("button", { name: "Count" }).click();
-    const histogram = page.getByRole("img", { name: /covered pixels/ });
-    await histogram.waitFor();
-    // The histogram counts the same fragments as the frame.
-    const counted = (await histogram.getAttribute("aria-label")).match(/^([\d,]+) fragments/)[1];
-    assert.equal(generated.replace("generated", "").trim(), counted);
-    assert.match(await histogram.getAttribute("aria-label"), /With k = 2, /);
-    const rows = await page.locator("#tiers tr").count();
-    assert.ok(rows >= 5, `${rows} targets`);
-    assert.match(await page.locator("#tiers tr", { hasText: "spirv" }).textContent(), /T\d/);
-}
-
-/** The table of axes: an illegal value is greyed and its reason can be read; a legal one edits the description. */
-export async function an_axis_is_chosen_in_the_table(page) {
-    await write(page, "buffer Mine from kplus_array {\n    keep 4;\n}\n");
-    await heading(page, "No problems");
-    await page.getByRole("tab", { name: "Axes" }).click();
-    const storage = page.getByRole("combobox", { name: "storage" });
-    await storage.locator("option:not([disabled])").nth(1).waitFor({ state: "attached" });
-    const illegal = storage.locator("option[disabled]").first();
-    assert.notEqual(await illegal.getAttribute("title"), "");
-    await page.locator("#reasons-storage summary").click();
-    assert.ok((await page.locator("#reasons-storage li").count()) >= 1);
-    // The table is shown again when the new text is analysed: its edits are those of that text.
-    const meaning = page.locator("#meaning-storage");
-    const before = await meaning.textContent();
-    await storage.selectOption("max_heap");
-    await page.waitForFunction((before) => document.querySelector("#meaning-storage").textContent !== before, before);
-    await heading(page, "No problems");
-    assert.match(await text(page), /storage: max_heap/);
-    const sort = page.getByRole("combobox", { name: "sort", exact: true });
-    const other = await sort.locator("option:not([disabled]):not(:checked)").first().getAttribute("value");
-    await sort.selectOption(other);
-    await heading(page, "No problems");
-    assert.match(await text(page), new RegExp(`sort: ${other}`));
-}
-
-/** The checker finds the race of a technique that has one, and shows the schedule. */
-export async function the_checker_shows_a_failing_schedule(page) {
-    await write(page, "buffer Mine from kb {\n    keep 2;\n}\n");
-    await heading(page, "No problems");
-    await page.getByRole("tab", { name: "Check it" }).click();
-    await page.getByRole("button", { name: "Check it", exact: true }).click();
-    await page.locator("#check-result .verdict", { hasText: "declared hazards" }).waitFor();
-    const steps = page.locator("#check-result tbody tr");
-    assert.ok((await steps.count()) >= 4);
-    assert.match(await steps.first().textContent(), /^1reads /);
-    assert.match(await steps.nth(1).textContent(), /^storage\/sorted_array\.wgsl:\d+/);
-    assert.match(await page.locator("#check-result").textContent(), /lost-update/);
-}
-
-/** A search that takes long ends when the person says so. */
-export async function a_check_can_be_cancelled(page) {
-    await write(page, "buffer Mine from kplus_array {\n    keep 4;\n}\n");
-    await heading(page, "No problems");
-    await page.getByRole("tab", { name: "Check it" }).click();
-    await page.getByRole("spinbutton", { name: "fragments" }).fill("4");
-    await page.getByRole("spinbutton", { name: "k", exact: true }).last().fill("3");
-    await page.getByRole("button", { name: "Check it", exact: true }).click();
-    await page.locator("#check-result .running").waitFor();
-    await page.getByRole("button", { name: "Cancel" }).click();
-    await page.locator("#check-result .verdict", { hasText: "Cancelled" }).waitFor();
-    assert.ok(await page.getByRole("button", { name: "Check it", exact: true }).isEnabled());
-}
-
-/** A check that another one replaces does not show its verdict. */
-export async function the_newest_check_counts(page) {
-    await write(page, "buffer Mine from kplus_array {\n    keep 4;\n}\n");
-    await heading(page, "No problems");
-    const start = (name) => page.getByRole("button", { name: `Check it on ${name}`, exact: true });
-    await page.getByRole("tab", { name: "Costs" }).click();
-    await start("glsl").click();
-    await page.locator("#check-result .running").waitFor();
-    await page.getByRole("tab", { name: "Costs" }).click();
-    await start("spirv").click();
-    await page.locator("#check-result .verdict:not(.running)").waitFor();
-    assert.match(await page.locator("#check-result").textContent(), /spirv/);
-    assert.ok(await page.getByRole("button", { name: "Check it", exact: true }).isEnabled());
-}
-
-/** Two descriptions side by side: equal ones have no difference, others a heat map. */
-export async function two_descriptions_are_compared(page) {
-    await write(page, "buffer Mine from kplus_array {\n    keep 4;\n}\n");
-    await heading(page, "No problems");
-    await page.getByRole("tab", { name: "Side by side" }).click();
-    await page.getByRole("button", { name: "Keep this description" }).click();
-    const summary = page.locator("#compare-summary");
-    await summary.filter({ hasText: "No pixel differs" }).waitFor();
-    await write(page, "buffer Mine from kplus_array {\n    keep 1;\n}\n");
-    await summary.filter({ hasText: /\d+ pixels .* differ/ }).waitFor();
-    const hot = await page.evaluate(() => {
-        const canvas = document.querySelector("#compare-difference");
-        const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
-        let hot = 0;
-        for (let at = 0; at < data.length; at += 4) hot += data[at] > 0 ? 1 : 0;
-        return hot;
-    });
-    assert.ok(hot > 100, `${hot} pixels of the heat map`);
 }
 
 const TRIANGLES = "mtllib none.mtl\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nv 0 -1 1\nf 1 2 3\nf 1 4 3\n";
@@ -193,16 +83,14 @@ export async function a_model_is_opened_and_dropped(page, { address, browser }) 
     await drop([["one.obj", TRIANGLES.replace("f 1 4 3\n", "")]]);
     await drawn(page, model);
     assert.equal(await shown(), "one.obj");
-    const status = (words) => page.locator("#status").filter({ hasText: words }).waitFor();
     await drop([["page.obj", "<!doctype html>"]]);
-    await status("page.obj: the file is a page in HTML");
+    await status(page, "page.obj: the file is a page in HTML");
     await drop([["a.obj", TRIANGLES], ["b.obj", TRIANGLES]]);
-    await status("Drop one model at a time");
+    await status(page, "Drop one model at a time");
     assert.equal(await shown(), "one.obj");
     // A page of the same server has the models, too.
-    await page.getByRole("button", { name: "Copy link" }).click();
-    await status("Copied the link");
-    const other = await open(browser, address, { hash: await page.evaluate(() => location.hash) });
+    const { hash } = new URL(await copyLink(page));
+    const other = await open(browser, address, { hash });
     assert.equal(await other.getByRole("combobox", { name: "scene" }).locator("option:checked").textContent(), "one.obj");
     await close(other);
 }

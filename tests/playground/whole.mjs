@@ -1,9 +1,10 @@
 /**
- * Scenarios of the whole page: by keyboard alone, in every window, light and dark, links, texts that leave the page.
+ * Scenarios of the whole page: by keyboard alone, in every window, light and dark, texts that leave the page.
  */
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
-import { PATIENCE, close, drawn, editor, faint, heading, open, pixels, tabTo, text, write } from "./page.mjs";
+import { assertContrast } from "./contrast.mjs";
+import { PANELS, PATIENCE, close, drawn, editor, heading, open, openTab, pixels, status, tabTo, text, write } from "./page.mjs";
 
 /** Everything by keyboard alone: no pointer is used here. */
 export async function everything_works_by_keyboard_alone(page) {
@@ -44,6 +45,7 @@ export async function everything_works_by_keyboard_alone(page) {
 
 /** Whatever has the focus shows it. */
 export async function the_focus_is_visible(page) {
+    await page.evaluate(() => (window.judged = new Set()));
     const invisible = [];
     for (let press = 0; press < 45; press += 1) {
         await page.keyboard.press("Tab");
@@ -54,6 +56,7 @@ export async function the_focus_is_visible(page) {
         const seen = await page.evaluate(() => {
             const element = document.activeElement;
             if (element === document.body) return null;
+            window.judged.add(element);
             const style = getComputedStyle(element);
             const visible = style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 1;
             return visible ? null : element.outerHTML.slice(0, 120);
@@ -61,24 +64,28 @@ export async function the_focus_is_visible(page) {
         if (seen) invisible.push(seen);
     }
     assert.deepEqual(invisible, []);
+    // The buttons at the top, the pickers and sliders of the picture, the tabs, and what the first panel has.
+    const judged = await page.evaluate(() => window.judged.size);
+    assert.ok(judged >= 20, `${judged} elements had the focus`);
 }
 
 /** Every control has a name. */
 export async function every_control_has_a_name(page) {
-    for (const tab of ["Costs", "Axes", "Check it", "Text", "Side by side"]) {
-        await page.getByRole("tab", { name: tab }).click();
-        const unnamed = await page.evaluate(() => {
+    for (const tab of PANELS) {
+        await openTab(page, tab);
+        const [unnamed, all] = await page.evaluate(() => {
             const controls = [...document.querySelectorAll("button, select, input, canvas, [role=textbox], [role=img]")];
             const name = (element) =>
                 element.getAttribute("aria-label") ||
                 element.labels?.[0]?.textContent ||
                 element.textContent ||
                 element.getAttribute("title");
-            return controls
-                .filter((element) => element.checkVisibility() && !name(element)?.trim())
-                .map((element) => element.outerHTML);
+            const visible = controls.filter((element) => element.checkVisibility());
+            const unnamed = visible.filter((element) => !name(element)?.trim());
+            return [unnamed.map((element) => element.outerHTML), visible.length];
         });
         assert.deepEqual(unnamed, [], tab);
+        assert.ok(all >= 20, `${all} controls: ${tab}`);
     }
 }
 
@@ -112,91 +119,88 @@ export async function every_window_has_a_layout(page) {
             assert.ok(edit.x === picture.x && picture.x === panels.x && picture.y > edit.y && panels.y > picture.y, name);
         if (width >= 760) assert.ok(edit.y === picture.y && picture.x > edit.x, name);
         if (width >= 1200) assert.ok(panels.x > picture.x && panels.y === edit.y && layout.scrollHeight <= height, name);
-        for (const tab of ["Costs", "Axes", "Check it", "Text", "Side by side"]) {
-            await page.getByRole("tab", { name: tab }).click();
+        for (const tab of PANELS) {
+            await openTab(page, tab);
             assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= width, `${tab} at ${width}`);
         }
-        await page.getByRole("tab", { name: "Costs" }).click();
+        await openTab(page, "Costs");
     }
 }
 
-/** Light and dark follow the system and the button; all text has the contrast of WCAG AA. */
+/** Fills a panel with what it can show of a description. Returns the least number of texts that it has then. */
+const FILLED = {
+    async Costs(panel) {
+        await panel.getByRole("button", { name: "Count" }).click();
+        await panel.getByRole("img", { name: /covered pixels/ }).waitFor();
+        return 40;
+    },
+    async Axes(panel) {
+        await panel.locator("#reasons-storage summary").click();
+        await panel.locator("#reasons-storage li").first().waitFor();
+        return 20;
+    },
+    async "Check it"(panel) {
+        await panel.getByRole("button", { name: "Check it", exact: true }).click();
+        await panel.getByRole("region", { name: "Failing schedule" }).waitFor();
+        return 20;
+    },
+    async Text(panel) {
+        await panel.locator("#text-view:not(.outdated) .cm-line").first().waitFor();
+        return 20;
+    },
+    async "Side by side"(panel) {
+        await panel.getByRole("button", { name: "Keep this description" }).click();
+        await panel.getByText("No pixel differs").waitFor();
+        return 5;
+    },
+};
+
+/** Light and dark follow the system and the button; all text has the contrast of WCAG AA, in every panel and beside a mistake. */
 export async function light_and_dark_have_contrast(page) {
-    const grounds = [];
+    await write(page, "buffer Mine from kb {\n    // a comment\n    keep 2;\n}\n");
+    await heading(page, "No problems");
+    const schemes = ["light", "dark"];
+    for (const tab of PANELS) {
+        const panel = await openTab(page, tab);
+        const least = await FILLED[tab](panel);
+        await page.mouse.move(0, 0);
+        for (const colorScheme of schemes) {
+            await page.emulateMedia({ colorScheme });
+            await assertContrast(page, { within: `#${await panel.getAttribute("id")}`, least, what: `${tab}, ${colorScheme}` });
+        }
+    }
     await write(page, "buffer Mine from kplus_aray {\n    // a comment\n    keep 4 least |f| f.depth;\n}\n");
     await heading(page, "1 error");
-    for (const scheme of ["light", "dark"]) {
-        await page.emulateMedia({ colorScheme: scheme });
-        grounds.push(await page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor));
-        for (const tab of ["Costs", "Axes", "Check it", "Text", "Side by side"]) {
-            await page.getByRole("tab", { name: tab }).click();
-            await page.mouse.move(0, 0);
-            assert.deepEqual(await page.evaluate(faint), [], `${tab}, ${scheme}`);
-        }
+    const grounds = [];
+    const ground = () => page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor);
+    for (const colorScheme of schemes) {
+        await page.emulateMedia({ colorScheme });
+        grounds.push(await ground());
+        await assertContrast(page, { within: "#problems-list", least: 4, what: `a mistake, ${colorScheme}` });
     }
     assert.notEqual(grounds[0], grounds[1]);
     const toggle = page.getByRole("button", { name: /^Colours/ });
     await toggle.click();
-    assert.equal(await page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor), grounds[0]);
+    assert.equal(await ground(), grounds[0]);
     await toggle.click();
-    assert.equal(await page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor), grounds[1]);
+    assert.equal(await ground(), grounds[1]);
     await page.reload();
     await page.locator(".cm-content").first().waitFor();
     await page.emulateMedia({ colorScheme: "light" });
-    assert.equal(await page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor), grounds[1]);
-}
-
-/** A link holds description, scene, camera, k and uniforms. */
-export async function a_link_restores_the_page(page, { browser, address }) {
-    const first = await pixels(page);
-    await write(
-        page,
-        "// über\nbuffer Mine from kplus_array {\n    uniform { plane: f32 }\n    keep 6;\n    where |f, u| f.depth > u.plane;\n}\n",
-    );
-    await heading(page, "No problems");
-    let before = await drawn(page, first);
-    await page.getByRole("combobox", { name: "scene" }).selectOption("cubes");
-    before = await drawn(page, before);
-    await page.getByRole("spinbutton", { name: "plane, as a number" }).fill("0.125");
-    await page.getByRole("spinbutton", { name: "k, as a number" }).fill("2");
-    await page.locator("#picture").focus();
-    await page.keyboard.press("ArrowRight");
-    await page.locator("#picture[aria-busy=false]").waitFor();
-    const last = await pixels(page);
-    await page.getByRole("button", { name: "Copy link" }).click();
-    await page.getByRole("status").filter({ hasText: "Copied the link" }).waitFor();
-    const link = await page.evaluate(() => navigator.clipboard.readText());
-    assert.ok(link.startsWith(`${address}#v1.`), link);
-    const other = await open(browser, address, { hash: link.slice(address.length) });
-    assert.equal(await text(other), await text(page));
-    assert.equal(await other.getByRole("spinbutton", { name: "plane, as a number" }).inputValue(), "0.125");
-    assert.equal(await other.getByRole("spinbutton", { name: "k, as a number" }).inputValue(), "2");
-    assert.equal(await other.getByRole("combobox", { name: "scene" }).inputValue(), "cubes");
-    await other.waitForFunction((last) => document.querySelector("#picture").toDataURL() === last, last, { timeout: PATIENCE });
-    await close(other);
-}
-
-/** A damaged link is reported, and the page works without it. */
-export async function a_damaged_link_is_reported(page, { browser, address }) {
-    for (const hash of ["#v1.AAAA", "#v1.%", "#nothing", "#v1.q1YqLVZSKi1OLVKyUjIwUtJRKkmtKFGyMgUA"]) {
-        const other = await open(browser, address, { hash });
-        assert.match(await other.getByRole("status").textContent(), /link/i, hash);
-        assert.match(await text(other), /buffer/);
-        await close(other);
-    }
+    assert.equal(await ground(), grounds[1]);
 }
 
 /** The text of every pass can be read, copied and downloaded. */
 export async function text_is_shown_copied_and_downloaded(page) {
     await write(page, "buffer Mine from kplus_array {\n    keep 4 least |f| f.depth - f.color.w;\n}\n");
     await heading(page, "No problems");
-    await page.getByRole("tab", { name: "Text" }).click();
+    await openTab(page, "Text");
     const files = page.getByRole("tablist", { name: "Passes" });
     await files.getByRole("tab", { name: "store", exact: true }).click();
     const code = page.locator("#text-view .cm-content");
     await code.filter({ hasText: "fn" }).waitFor();
     await page.getByRole("button", { name: "Copy", exact: true }).click();
-    await page.getByRole("status").filter({ hasText: "Copied" }).waitFor();
+    await status(page, "Copied");
     const copied = await page.evaluate(() => navigator.clipboard.readText());
     assert.match(copied, /fn /);
     assert.ok(copied.startsWith((await code.locator(".cm-line").first().textContent()).trimEnd()));
@@ -224,7 +228,7 @@ export async function an_error_of_a_request_is_shown(page) {
         }),
     );
     await page.getByRole("button", { name: "Count" }).click();
-    await page.getByRole("status").filter({ hasText: "choose a smaller size" }).waitFor();
+    await status(page, "choose a smaller size");
     await page.unroute("**/api/predict");
     await page.getByRole("button", { name: "Count" }).click();
     await page.getByRole("img", { name: /covered pixels/ }).waitFor();
@@ -237,13 +241,16 @@ export async function two_pages_work_at_once(page, { browser, address }) {
     await write(other, "buffer Mine from kplus_array {\n    keep 3;\n}\n");
     await heading(page, "1 error");
     await heading(other, "No problems");
+    assert.match(await text(page), /kplus_aray/);
+    assert.equal(await other.getByRole("spinbutton", { name: "k, as a number" }).inputValue(), "3");
     await close(other);
 }
+
 /** A line of generated text leads to the line of the description that it came from. */
 export async function a_generated_line_leads_to_its_origin(page) {
     await write(page, "buffer Mine from kplus_array {\n    keep 4 least |f| f.depth - f.color.w;\n}\n");
     await heading(page, "No problems");
-    await page.getByRole("tab", { name: "Text" }).click();
+    await openTab(page, "Text");
     await page.getByRole("tablist", { name: "Passes" }).getByRole("tab", { name: "store", exact: true }).click();
     const origin = page.locator("#text-view .origin").first();
     for (let scroll = 0; scroll < 200 && (await origin.count()) === 0; scroll += 1) {

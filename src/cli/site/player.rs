@@ -19,15 +19,20 @@ const DATA: &str = "data";
 /// The modules of the playground's page that the player has, and its style.
 const SHARED: &[&str] = &[
     "axes.mjs",
+    "base.css",
     "camera.mjs",
+    "check.css",
     "code_style.mjs",
     "code_view.mjs",
     "controls.mjs",
+    "costs.css",
     "dom.mjs",
+    "editor.css",
     "file_tabs.mjs",
     "geometry.mjs",
     "language.mjs",
     "markdown.mjs",
+    "picture.css",
     "picture.mjs",
     "scenes.mjs",
     "sliders.mjs",
@@ -40,6 +45,7 @@ const SHARED: &[&str] = &[
     "uniforms.mjs",
     "vendor/codemirror.mjs",
     "webgpu_frames.mjs",
+    "windows.css",
 ];
 
 /// The files of the folder `page`, with their paths in the site.

@@ -1,5 +1,5 @@
 /**
- * The look of CodeMirror: colours and sizes from the variables of style.css, so that light and dark need no other theme.
+ * The look of CodeMirror: colours and sizes from the variables of base.css, so that light and dark need no other theme.
  */
 import { EditorView, HighlightStyle, syntaxHighlighting, tags } from "./vendor/codemirror.mjs";
 

@@ -1,14 +1,14 @@
 /**
  * Small plots as SVG: times of the last frames, and a histogram with k.
  *
- * Input: numbers. Output: drawings with a text for those who do not see them. Colours are classes and variables of style.css.
+ * Input: numbers. Output: drawings with a text for those who do not see them. Colours are classes of costs.css and variables of base.css.
  */
 import { count, element, fill, milliseconds, percent, svg } from "./dom.mjs";
 
 const FRAMES = 60;
 const SIZE = { width: 360, height: 96 };
 
-/** Colours of passes in style.css, `--series-0` and on. */
+/** Colours of passes in costs.css, `.series-0` and on. */
 const SERIES = 8;
 
 /**

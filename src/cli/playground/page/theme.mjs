@@ -1,7 +1,7 @@
 /**
  * Light and dark: as the system says, or as the person chose on this page.
  *
- * Input: clicks. Output: the attribute `data-theme` of the page, which style.css reads. The choice is kept in the browser's storage, where
+ * Input: clicks. Output: the attribute `data-theme` of the page, which base.css reads. The choice is kept in the browser's storage, where
  * there is one.
  */
 

@@ -17,7 +17,7 @@ function decorations(view) {
         for (let position = from; position <= to;) {
             const line = view.state.doc.lineAt(position);
             const columns = Math.min(/^ */.exec(line.text)[0].length + FURTHER, MOST);
-            // The padding is that of style.css's lines, 6 pixels, and the columns.
+            // The padding is that of the lines in code_style.mjs, 6 pixels, and the columns.
             const style = `text-indent: -${columns}ch; padding-left: calc(6px + ${columns}ch)`;
             builder.add(line.from, line.from, Decoration.line({ attributes: { style } }));
             position = line.to + 1;
