@@ -41,6 +41,33 @@ buffer Thickness from kplus_array {
     }
 }";
 
+/// An effect that iterations of peeling interrupt: with variables of every type, an index, `break` and `return`.
+pub const CONTINUED: &str = "
+buffer Continued from f2b_ll {
+    fragment { color: rgba8, depth: f32, id: u32 }
+    uniform { solid: u32, least: f32 }
+    resolve |fragments, u| {
+        let most = u.least.max(0.01);
+        let mut inside = false;
+        let mut crossings = 0;
+        let mut last = -1_i32;
+        let mut light = Vec3::ZERO;
+        let mut left = 1.0;
+        for (i, f) in fragments.iter().enumerate() {
+            if f.id == u.solid { inside = !inside; crossings += 1; last = i as i32; }
+            if i > 60 { return vec4(1.0, 0.0, 0.0, 1.0); }
+            for step in 0..2 { if step as u32 > f.id { break; } }
+            if !inside {
+                light += left * f.color.w * f.color.truncate();
+                left *= 1.0 - f.color.w;
+            }
+            if left < most { break; }
+        }
+        if crossings % 2 == 1 && last >= 0 { light *= 0.5; }
+        light.extend(1.0 - left)
+    }
+}";
+
 /// A description with attributes whose names are keywords or generated names in some language.
 pub const RESERVED: &str = "
 buffer Reserved from ab_ll {
@@ -119,6 +146,8 @@ fn written() -> Vec<Case> {
         ("dual_fab", technique("dual_fab"), vec![]),
         ("dual_kb", technique("dual_kb"), vec![]),
         ("f2b_2p", technique("f2b_2p"), vec![]),
+        ("f2b_1p", technique("f2b_1p"), vec![]),
+        ("continued", text(CONTINUED), vec![]),
         ("f2b_3p", technique("f2b_3p"), vec![]),
         ("dual", technique("dual"), vec![]),
         ("dual_2p", technique("dual_2p"), vec![]),

@@ -18,7 +18,7 @@ const STORED_KEYS: &str = "the storage also has the key of each fragment, and th
 const BY_IDS: &str =
     "the window of ids and what is found are words of their own, and the colour so far is four floats for each end";
 
-const CATALOGUE: [Entry; 40] = [
+const CATALOGUE: [Entry; 41] = [
     ("z_buffer", "2", "1", None),
     ("kb", "2k", "1", None),
     ("kb_multi", "2k", "k+1", None),
@@ -62,6 +62,7 @@ const CATALOGUE: [Entry; 40] = [
     ("dual_fab", "n+6", "1025", Some(("2n+13", STORED_KEYS))),
     ("dual_kb", "n+4", "1025", Some(("2n+12", STORED_KEYS))),
     ("f2b_2p", "10", "2049", Some(("19", BY_IDS))),
+    ("f2b_1p", "", "1025", Some(("20", "no paper counts it: as `f2b_2p`, and a word that the first fragment takes"))),
     ("f2b_3p", "10", "3072", Some(("20", BY_IDS))),
     ("dual", "6", "1025", Some(("16", STORED_KEYS))),
     ("dual_2p", "20", "2049", Some(("38", BY_IDS))),

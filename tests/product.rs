@@ -3,18 +3,21 @@
 //! checked, and for some classes a random one in addition. A covering set also passes glslang, spirv-val and Tint. If naga rejects what the
 //! rules accept, fragbuf has a defect.
 
-use std::collections::BTreeSet;
-use std::hash::{DefaultHasher, Hash, Hasher};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{LazyLock, Mutex};
+mod combinations;
 
-use fragbuf::vocabulary::{Capability, Feature, Row, Template};
+use std::collections::{BTreeMap, BTreeSet};
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use combinations::{Combination, INFORMATIVE, Outlook, combinations};
+use fragbuf::vocabulary::{Feature, Row, Template};
 use fragbuf::{File, Form, Registry, Request, TARGETS, Target, Variant, check, generate};
 use fragbuf_codegen::{Linking, Profile, link, plan, verify};
 use fragbuf_model::{Alternative, Attribute, Choice, Draft, Format, Keep, KeepCount, Selection, SourceSpan, Spanned};
 
 use crate::cases::{CUSTOM, DEPTH_ONLY, RESERVED, Random, checked, generated, has_empty_list, named, text};
-use crate::validators::validate;
+use crate::validators::{validate, validate_covering};
 
 /// Returns the payloads, constraints and closures that every combination is checked with.
 fn descriptions() -> Vec<Draft> {
@@ -25,109 +28,6 @@ fn descriptions() -> Vec<Draft> {
         parsed(DEPTH_ONLY),
         parsed(RESERVED),
     ]
-}
-
-/// Capabilities that inform callers. No row requires them.
-const INFORMATIVE: [Capability; 1] = [Capability::CountsEvents];
-
-/// Returns the rows of an axis in equivalence classes of equal capabilities and conditions: the rules depend on nothing else.
-fn classes<'r>(registry: &'r Registry, axis: &'r str) -> Vec<Vec<&'r Row>> {
-    let capabilities = |row: &Row| {
-        let conditions = row.conditions.iter().map(|condition| condition.formula.clone()).collect::<Vec<_>>();
-        let requires = (row.requires.clone(), row.needs.clone(), row.needs_if.clone(), row.least.clone());
-        let provides: Vec<Capability> =
-            row.provides.iter().copied().filter(|capability| !INFORMATIVE.contains(capability)).collect();
-        (provides, row.implies.clone(), requires, conditions, row.extra_words.len())
-    };
-    let mut classes: Vec<Vec<&Row>> = Vec::new();
-    for row in registry.rows_of(axis).filter(|row| row.key != Registry::CLOSURE) {
-        match classes.iter_mut().find(|class| capabilities(class[0]) == capabilities(row)) {
-            Some(class) => class.push(row),
-            None => classes.push(vec![row]),
-        }
-    }
-    classes
-}
-
-/// A class per axis.
-struct Combination {
-    /// The first row of each class.
-    choices: Vec<(String, String)>,
-    /// For some combinations, a random row of each class, so that every two compatible rows are combined.
-    random_choices: Option<Vec<(String, String)>>,
-    /// The number of combinations of the same classes, on which the rules decide equally.
-    equivalent: usize,
-    outlook: Outlook,
-}
-
-/// Whether a combination can be legal, before the rules are applied.
-#[derive(Clone, Copy, PartialEq)]
-enum Outlook {
-    Open,
-    /// A row requires a capability that no row of a later axis provides.
-    Illegal,
-}
-
-/// One combination in this many is also checked with random rows.
-const RANDOM_ONE_IN: usize = 12;
-
-/// Returns the choices of one class per axis. A prefix that no later choice can make legal is completed once.
-fn combinations(registry: &Registry) -> Vec<Combination> {
-    let axes = registry.axes().iter().filter(|axis| axis.chosen && axis.key != Registry::CLOSURE_AXIS);
-    let axes: Vec<(&str, Vec<Vec<&Row>>)> = axes.map(|axis| (axis.key, classes(registry, axis.key))).collect();
-    let mut found = Vec::new();
-    complete(&axes, &mut Vec::new(), &mut Random(5), &mut found);
-    found
-}
-
-type Classes<'r> = (&'r str, Vec<Vec<&'r Row>>);
-
-fn complete<'a>(
-    axes: &'a [Classes<'a>],
-    begin: &mut Vec<&'a Vec<&'a Row>>,
-    random: &mut Random,
-    found: &mut Vec<Combination>,
-) {
-    let later = &axes[begin.len()..];
-    let outlook = outlook(begin, later);
-    if outlook == Outlook::Open && !later.is_empty() {
-        for class in &later[0].1 {
-            begin.push(class);
-            complete(axes, begin, random, found);
-            begin.pop();
-        }
-        return;
-    }
-    let all: Vec<&Vec<&Row>> = begin.iter().copied().chain(later.iter().map(|(_, classes)| &classes[0])).collect();
-    let named = |rows: Vec<&Row>| -> Vec<(String, String)> {
-        axes.iter().zip(rows).map(|((axis, _), row)| ((*axis).to_owned(), row.key.clone())).collect()
-    };
-    let is_random = outlook == Outlook::Open && random.below(RANDOM_ONE_IN) == 0;
-    let rows_of = |(_, classes): &Classes<'_>| classes.iter().map(Vec::len).sum::<usize>();
-    found.push(Combination {
-        choices: named(all.iter().map(|class| class[0]).collect()),
-        random_choices: is_random.then(|| named(all.iter().map(|class| *random.pick(class)).collect())),
-        equivalent: begin.iter().map(|class| class.len()).chain(later.iter().map(rows_of)).product(),
-        outlook,
-    });
-}
-
-/// Tests whether the rows chosen so far can become legal.
-fn outlook(begin: &[&Vec<&Row>], later: &[Classes<'_>]) -> Outlook {
-    let rows = || begin.iter().map(|class| class[0]);
-    let may_be = |capability: Capability| {
-        // The effect is none of the axes here: a description without a closure has the default.
-        static EFFECTS: LazyLock<Vec<Capability>> = LazyLock::new(|| {
-            Registry::builtin().rows_of(Registry::CLOSURE_AXIS).flat_map(|row| row.provides.clone()).collect()
-        });
-        if EFFECTS.contains(&capability) {
-            return true;
-        }
-        let later = || later.iter().flat_map(|(_, classes)| classes.iter().map(|class| class[0]));
-        rows().chain(later()).any(|row| row.may_provide(capability))
-    };
-    let all = rows().all(|row| row.requires.iter().all(|capability| may_be(*capability)));
-    if all { Outlook::Open } else { Outlook::Illegal }
 }
 
 fn chosen(draft: &Draft, choices: &[(String, String)], keep: KeepCount) -> Draft {
@@ -179,7 +79,7 @@ fn every_combination_generates_or_is_rejected_with_help() {
     });
     let covering: Vec<File> =
         covering(&papers).into_iter().flat_map(|accepted| generated(&accepted.variant).files).collect();
-    let external = validate(covering.iter());
+    let external = validate_covering(covering.iter());
     assert!(external > 100);
     println!(
         "product: {} combinations, {} accepted, {} rejected, in {} and {} kinds; {} distinct passes in {} files through \
@@ -194,46 +94,83 @@ fn every_combination_generates_or_is_rejected_with_help() {
     );
 }
 
-/// Applies the rules to every combination with every description. Returns the number of equivalent combinations, and the variant if it
-/// is accepted.
+/// The `keep` lines that every combination is checked with.
+const KEEPS: [KeepCount; 2] = [KeepCount::AtMost(8), KeepCount::All];
+
+/// Applies the rules to every combination with every description and every `keep`. A combination that no description can make legal is
+/// checked with one of them, which a seeded generator chooses: its rejection is certain, its messages are a sample. Returns the number of
+/// equivalent combinations, and the variant if it is accepted.
 fn decided<'a>(
     registry: &Registry,
     descriptions: &[Draft],
     combinations: &'a [Combination],
 ) -> Vec<(usize, Option<Accepted<'a>>)> {
-    let decide = |combination: &'a Combination| {
-        let mut decided = Vec::new();
-        let random = combination.random_choices.iter().map(|choices| (0, choices));
-        let tried: Vec<_> = std::iter::once((combination.equivalent, &combination.choices)).chain(random).collect();
-        let keeps = [KeepCount::AtMost(8), KeepCount::All];
-        for (payload, description) in descriptions.iter().enumerate() {
-            for ((equivalent, choices), keep) in tried.iter().flat_map(|tried| keeps.map(|keep| (*tried, keep))) {
-                let with = |keep: KeepCount| check(&chosen(description, choices, keep), registry);
-                // A row that requires `keep 1` is checked with it.
-                let checked = match with(keep) {
-                    Err(diagnostics) if diagnostics.to_string().contains("`keep 1`") => with(KeepCount::AtMost(1)),
-                    checked => checked,
-                };
-                if let Err(diagnostics) = &checked {
-                    assert!(diagnostics.iter().all(|diagnostic| {
-                        !diagnostic.help.is_empty() && !has_empty_list(diagnostic) && diagnostic.code.name != "internal"
-                    }));
-                }
-                let variant = checked.ok();
-                assert!(variant.is_none() || combination.outlook == Outlook::Open, "{choices:?} is legal after all");
-                let accepted = variant.map(|variant| Accepted { payload, choices, variant });
-                decided.push((equivalent, accepted));
-            }
-        }
-        decided
+    let every: Vec<(usize, KeepCount)> =
+        (0..descriptions.len()).flat_map(|payload| KEEPS.map(|keep| (payload, keep))).collect();
+    let mut random = Random(7);
+    let choose = |combination: &Combination| match combination.outlook {
+        Outlook::Open => every.clone(),
+        Outlook::Illegal => vec![*random.pick(&every)],
     };
-    let (first, second) = combinations.split_at(combinations.len() / 2);
+    let with: Vec<Vec<(usize, KeepCount)>> = combinations.iter().map(choose).collect();
+    assert_sample(combinations, &with, every.len());
+    let decide = |(combination, with): (&'a Combination, &Vec<(usize, KeepCount)>)| {
+        let random = combination.random_choices.iter().map(|choices| (0, choices));
+        let equivalent = combination.equivalent * every.len() / with.len();
+        let tried: Vec<_> = std::iter::once((equivalent, &combination.choices)).chain(random).collect();
+        let decided = with.iter().flat_map(|(payload, keep)| tried.iter().map(move |tried| (*payload, *keep, *tried)));
+        let decided = decided.map(|(payload, keep, (equivalent, choices))| {
+            let variant = checked_with_help(&descriptions[payload], choices, keep, registry);
+            assert!(variant.is_none() || combination.outlook == Outlook::Open, "{choices:?} is legal after all");
+            (equivalent, variant.map(|variant| Accepted { payload, choices, variant }))
+        });
+        decided.collect::<Vec<_>>()
+    };
+    let jobs: Vec<_> = combinations.iter().zip(&with).collect();
+    let (first, second) = jobs.split_at(jobs.len() / 2);
     std::thread::scope(|scope| {
-        let other = scope.spawn(|| second.iter().flat_map(decide).collect::<Vec<_>>());
-        let mut all: Vec<_> = first.iter().flat_map(decide).collect();
+        let other = scope.spawn(|| second.iter().copied().flat_map(decide).collect::<Vec<_>>());
+        let mut all: Vec<_> = first.iter().copied().flat_map(decide).collect();
         all.extend(other.join().unwrap());
         all
     })
+}
+
+/// The sample has every row of enough illegal combinations with every description and `keep`.
+fn assert_sample(combinations: &[Combination], with: &[Vec<(usize, KeepCount)>], every: usize) {
+    let mut of_row: BTreeMap<&(String, String), (usize, BTreeSet<String>)> = BTreeMap::new();
+    for (combination, with) in combinations.iter().zip(with).filter(|(one, _)| one.outlook == Outlook::Illegal) {
+        for choice in &combination.choices {
+            let (count, seen) = of_row.entry(choice).or_default();
+            *count += 1;
+            seen.extend(with.iter().map(|with| format!("{with:?}")));
+        }
+    }
+    let covered = of_row.values().filter(|(_, seen)| seen.len() == every).count();
+    println!("sample: {covered} of {} rows of illegal combinations with every description", of_row.len());
+    let missed = of_row.iter().filter(|(_, (count, seen))| *count > 100 && seen.len() < every);
+    assert!(missed.clone().count() == 0 && covered > 50, "{covered} rows, without {:?}", missed.collect::<Vec<_>>());
+}
+
+/// Applies the rules to a description with these rows. A rejection has help.
+fn checked_with_help(
+    description: &Draft,
+    choices: &[(String, String)],
+    keep: KeepCount,
+    registry: &Registry,
+) -> Option<Variant> {
+    let with = |keep: KeepCount| check(&chosen(description, choices, keep), registry);
+    // A row that requires `keep 1` is checked with it.
+    let checked = match with(keep) {
+        Err(diagnostics) if diagnostics.to_string().contains("`keep 1`") => with(KeepCount::AtMost(1)),
+        checked => checked,
+    };
+    if let Err(diagnostics) = &checked {
+        assert!(diagnostics.iter().all(|diagnostic| {
+            !diagnostic.help.is_empty() && !has_empty_list(diagnostic) && diagnostic.code.name != "internal"
+        }));
+    }
+    checked.ok()
 }
 
 /// Returns a hash per pass and profile: its source without comments, and the uses that emitters depend on. Passes of equal hash are emitted

@@ -232,6 +232,19 @@ pub const CONTRACTS: &[Contract] = &[
         "returns the number of the layer of a fragment that an effect reads: its place, or that of what the iteration stores",
     ),
     row("peeling", "peeling_result", "(pixel: u32) -> vec4<f32>", "returns the premultiplied colour of the pixel"),
+    row("peeling", "peeling_pixel", "() -> u32", "returns the pixel that is resolved"),
+    row(
+        "peeling",
+        "peeling_word",
+        "(word: u32, pixel: u32) -> u32",
+        "returns a word that the effect has saved in an earlier iteration, of those of the formula `resumed_words`; 0 in the first",
+    ),
+    row(
+        "peeling",
+        "peeling_save",
+        "(word: u32, pixel: u32, value: u32)",
+        "saves a word of the effect for the next iteration",
+    ),
     row("sort", "sort_begin", "()", "forgets the fragments that were added"),
     row("sort", "sort_gather", "(entry: Packed)", "adds one fragment of the pixel"),
     row("sort", "sort_finish", "()", "sorts the fragments, nearest first"),
@@ -284,6 +297,12 @@ pub const CONTRACTS: &[Contract] = &[
         "resolve_layers",
         "() -> vec4<f32>",
         "returns a premultiplied colour from the fragments that `layer` returns; called if there is at least one",
+    ),
+    row(
+        "resolve",
+        "resolve_result",
+        "(pixel: u32) -> vec4<f32>",
+        "returns the premultiplied colour of the pixel after the last iteration of peeling",
     ),
     row(
         "resolve",

@@ -1,4 +1,4 @@
-// Writes the colour that iterations have accumulated. Pixels without fragments keep the content of the target.
+// Writes the colour after the last iteration of peeling. Pixels without fragments keep the content of the target.
 
 @fragment
 fn composite(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
@@ -7,5 +7,5 @@ fn composite(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         return vec4<f32>(0.0);
     }
     let pixel = pixel_index(position.xy);
-    return overflow_finish(pixel, peeling_result(pixel));
+    return overflow_finish(pixel, resolve_result(pixel));
 }

@@ -17,3 +17,7 @@ fn resolve_layers() -> vec4<f32> {
     peeling_suspend(color, transmittance);
     return vec4<f32>(color, 1.0 - transmittance);
 }
+
+fn resolve_result(pixel: u32) -> vec4<f32> {
+    return peeling_result(pixel);
+}

@@ -1,7 +1,8 @@
-// What iterations of peeling have composited so far in a pixel: premultiplied colour, and the transmittance behind it,
-// in PEELING_SLOTS parts from the front to the back. `over` is associative, so parts are composited apart and joined
-// when nothing can come between them. The slots of an iteration continue the parts of the same number: those with an
-// even number add fragments behind what they have, those with an odd number in front of it.
+// What an effect has computed so far in a pixel. An effect that continues a loop saves its words by number. `over` and
+// `layer` save what they have composited: premultiplied colour, and the transmittance behind it, in PEELING_SLOTS parts
+// from the front to the back. `over` is associative, so parts are composited apart and joined when nothing can come
+// between them. The slots of an iteration continue the parts of the same number: those with an even number add
+// fragments behind what they have, those with an odd number in front of it.
 
 /// The bits of a transmittance of 1. Memory holds the difference, so cleared memory lets all light pass.
 const ACCUMULATED_TRANSPARENT = 0x3f800000u;
@@ -12,6 +13,18 @@ var<private> accumulated_slot: u32;
 
 fn peeling_resume(pixel: u32) {
     accumulated_pixel = pixel;
+}
+
+fn peeling_pixel() -> u32 {
+    return accumulated_pixel;
+}
+
+fn peeling_word(word: u32, pixel: u32) -> u32 {
+    return accumulated_load(word, pixel);
+}
+
+fn peeling_save(word: u32, pixel: u32, value: u32) {
+    accumulated_store(word, pixel, value);
 }
 
 fn peeling_begin(slot: u32) {

@@ -25,7 +25,8 @@ fn unpeeled() -> Row {
     let boxes = Pass { objects: Objects::Boxes, ..boxes };
     Row {
         resources: vec![reached.by("pixel", "pixels")],
-        requires: vec![Capability::KeepsLater],
+        // Boxes are compared by depth.
+        requires: vec![Capability::KeepsLater, Capability::LayersInOrder],
         // The boxes need a pipeline of their own.
         needs: vec![Feature::OwnEntryPoints],
         edits: vec![

@@ -111,9 +111,9 @@ pub(crate) fn rows() -> Vec<Row> {
         row("boxes", "draws the boxes of objects, and writes nothing", template!("pass/boxes"), vec![]),
         row(
             "composite",
-            "writes the colour that iterations have accumulated",
+            "writes the colour after the last iteration",
             template!("pass/composite"),
-            vec!["addressing", "peeling", "overflow"],
+            vec!["addressing", "peeling", "resolve", "overflow"],
         ),
         row(
             "resolve_stream",

@@ -3,7 +3,7 @@
 mod ids;
 mod layers;
 
-use crate::conditions::{depth_key, keeps_one};
+use crate::conditions::keeps_one;
 use crate::vocabulary::{
     Access, Blend, Capability, Edit, Element, Feature, Hazard, Parameter, Pass, Permits, Repeat, Resource, Row, State,
     Step, Until, Use,
@@ -13,6 +13,7 @@ pub(crate) fn rows() -> Vec<Row> {
     vec![
         Row {
             template: Some(template!("peeling/none")),
+            provides: vec![Capability::LayersInOrder],
             ..Row::new("peeling", "none", "no: what is not kept is handed to the overflow", "")
         },
         k_layers(),
@@ -22,6 +23,7 @@ pub(crate) fn rows() -> Vec<Row> {
         ids::id_pairs(),
         ids::id_pairs_tested(),
         ids::id_pairs_both_sides(),
+        ids::ids_on_demand(),
         front_to_back(),
     ]
 }
@@ -39,14 +41,13 @@ fn k_layers() -> Row {
         uses: vec![Use::new("boundary", Access::Read), Use::new("unpeeled", Access::Atomic)],
         calls: vec!["addressing", "counters"],
         provides: vec![Capability::KeepsLater],
+        implies: vec![("depth_key".into(), Capability::LayersInOrder)],
         requires: [
             // The shader of a fragment counts it: a depth test would hide fragments from it that a later iteration keeps.
             &[Capability::KeepsBest, Capability::KeepsEqualKeys, Capability::CullInShader, Capability::TotalOrder],
             CONTINUES.as_slice(),
         ]
         .concat(),
-        // Effects continue from front to back.
-        conditions: vec![depth_key()],
         needs: vec![Feature::FragmentAtomics],
         edits: edits(&["boundary", "unpeeled"], Vec::new()),
         parameters: vec![iterations("limit of iterations; fragments that remain after the last are counted")],
@@ -73,8 +74,9 @@ fn front_to_back() -> Row {
         uses: vec![Use::new("last_keys", Access::Read), Use::new("remaining", Access::Atomic)],
         calls: vec!["addressing", "counters"],
         provides: vec![Capability::KeepsLater],
+        implies: vec![("depth_key".into(), Capability::LayersInOrder)],
         requires: [&[Capability::KeepsBest], CONTINUES.as_slice()].concat(),
-        conditions: vec![depth_key(), keeps_one()],
+        conditions: vec![keeps_one()],
         needs: vec![Feature::FragmentAtomics],
         edits: edits(&["last_keys"], Vec::new()),
         parameters: vec![iterations(
@@ -113,11 +115,10 @@ fn resources() -> Vec<Resource> {
 
 /// Returns what the effect continues with, and the word that ends the loop.
 fn accumulated() -> Vec<Resource> {
-    let summary = "for each slot: the colour composited so far, premultiplied, and the transmittance behind it";
-    let colors = Resource::new("accumulated", Element::Word, summary).by("channel", "4 * PEELING_SLOTS");
-    let colors = colors.by("pixel", "pixels");
+    let summary = "for each slot, what the effect has computed so far: of `over` the premultiplied colour, and the transmittance behind it";
+    let words = Resource::new("accumulated", Element::Word, summary).by("word", "resumed_words * PEELING_SLOTS");
     vec![
-        colors.cleared(0).over_iterations(),
+        words.by("pixel", "pixels").cleared(0).over_iterations(),
         Resource::new("remaining", Element::Word, "not 0: another iteration is needed").cleared(0),
     ]
 }

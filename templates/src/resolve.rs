@@ -15,8 +15,8 @@ pub(crate) fn rows() -> Vec<Row> {
         Row {
             template: Some(template!("resolve/over")),
             calls: vec!["samples", "peeling"],
-            provides: vec![Capability::Resumes],
-            requires: vec![Capability::Sorted],
+            provides: vec![Capability::Resumes, Capability::JoinsParts],
+            requires: vec![Capability::Sorted, Capability::LayersInOrder],
             conditions: vec![color(ADD_COLOR)],
             parameters: vec![Parameter::number(
                 "opaque",
@@ -30,7 +30,7 @@ pub(crate) fn rows() -> Vec<Row> {
         Row {
             template: Some(template!("resolve/layer")),
             calls: vec!["samples", "peeling"],
-            provides: vec![Capability::Resumes],
+            provides: vec![Capability::Resumes, Capability::JoinsParts],
             requires: vec![Capability::Sorted],
             conditions: vec![color(ADD_COLOR)],
             parameters: vec![Parameter::number(
@@ -72,7 +72,9 @@ pub(crate) fn rows() -> Vec<Row> {
             ..Row::new("resolve", "complexity", "the number of fragments, as a heat map from blue to red", "")
         },
         Row {
-            calls: vec!["samples"],
+            calls: vec!["samples", "peeling"],
+            requires: vec![Capability::LayersInOrder],
+            implies: vec![("resumable".into(), Capability::Resumes)],
             ..Row::new("resolve", CLOSURE, "the closure of the description, `resolve |fragments, u| { … }`", "")
         },
     ]

@@ -204,7 +204,7 @@ fn layer_slots() -> Row {
         steps: vec![Step::Pass(store), resolve(&["keys", "entries"])],
         calls: vec!["overflow", "peeling"],
         // A slot holds one fragment.
-        provides: [row.provides.as_slice(), &[Capability::Sorted]].concat(),
+        provides: [row.provides.as_slice(), &[Capability::Sorted, Capability::OnePerSlot]].concat(),
         defaults: [row.defaults.as_slice(), &[("sort".into(), "none".into())]].concat(),
         requires: vec![Capability::DividesLayers, Capability::OneSample],
         hazards: vec![

@@ -6,6 +6,7 @@ use std::fmt::Write;
 use fragbuf_model::Format;
 use fragbuf_templates::vocabulary::TieBreak;
 
+use super::resumable;
 use crate::Plan;
 use crate::layout::{Key, Layout, MemberSource, Word};
 
@@ -18,9 +19,7 @@ pub(super) fn text(plan: &Plan) -> String {
     recolored(plan, &mut text);
     orders(plan, &mut text);
     admit(plan, &mut text);
-    if plan.variant.resolve.is_some() {
-        text.push_str("fn resolve_layers() -> vec4<f32> {\n    return user_resolve();\n}\n");
-    }
+    resumable::text(plan, &mut text);
     text
 }
 

@@ -3,6 +3,7 @@
 
 mod buffers;
 mod fragment;
+mod resumable;
 mod surface;
 mod textures;
 mod user_buffers;
@@ -33,9 +34,13 @@ pub(crate) fn sources(plan: &Plan, pass: &Pass, linking: &Linking, called: &[Str
     sources
 }
 
+/// Returns the closures, the effect in parts if it is interrupted.
 fn closures(plan: &Plan) -> impl Iterator<Item = &fragbuf_model::UserFunction> {
     let variant = &plan.variant;
-    variant.criterion.iter().chain(&variant.constraints).chain(&variant.resolve)
+    let parts = resumable::interrupted(plan);
+    let whole = variant.resolve.iter().filter(move |_| parts.is_none());
+    let parts = parts.into_iter().flat_map(|parts| parts.parts());
+    variant.criterion.iter().chain(&variant.constraints).chain(whole).chain(parts)
 }
 
 /// Generates the constants of the pass, and those of the plan that the pass does not replace.

@@ -37,7 +37,7 @@ pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics>
     let criterion = draft.keep.as_ref().and_then(|keep| keep.criterion.as_ref());
     // With a missing storage, an unknown choice or a part with errors, every capability would be reported as missing.
     if diagnostics.is_empty() && !draft.incomplete.hides_capabilities() {
-        let given = description_values(&attributes, criterion, keep);
+        let given = description_values(&attributes, criterion, draft.resolve.as_ref(), keep);
         capabilities::check(draft, &choices, given, registry, &mut diagnostics);
     }
     let diagnostics = command_line::fixes(draft, registry, diagnostics);

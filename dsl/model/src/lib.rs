@@ -8,6 +8,7 @@ mod diagnostic;
 mod draft;
 mod names;
 mod nearest_name;
+pub mod resumable;
 mod set;
 mod span;
 mod uniform_block;
@@ -22,6 +23,7 @@ pub use draft::{
 };
 pub use names::mangled;
 pub use nearest_name::nearest_name;
+pub use resumable::Resumable;
 pub use set::SET;
 pub use span::{SourceSpan, Spanned};
 pub use uniform_block::UniformBlock;

@@ -33,7 +33,7 @@ fn is_taken(name: &str) -> bool {
 
 /// Names in generated code and templates.
 const GENERATED: &str =
-    "CAPACITY Fragment Packed VertexOutput Targets FragmentInput Vertex coverage frame main uniforms";
+    "CAPACITY Fragment Packed VertexOutput Targets FragmentInput Vertex coverage frame main uniforms resumed Resumed";
 
 /// Prefixes of names in generated code and templates.
 const PREFIXES: [&str; 6] = ["layer", "rust_", "sort_", "storage_", "sync_", "user_"];

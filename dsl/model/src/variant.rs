@@ -76,16 +76,21 @@ impl Variant {
         Variant(description)
     }
 
+    /// Returns the values without the extra words of rows.
+    fn own_values(&self) -> DescriptionValues {
+        description_values(&self.attributes, self.criterion.as_ref(), self.resolve.as_ref(), self.keep)
+    }
+
     /// Returns the values that the conditions of the selection's rows read.
     pub fn description_values(&self, selection: &Selection) -> DescriptionValues {
         let rows = selection.rows.iter().map(|selected| &*selected.row);
-        with_extra_words(description_values(&self.attributes, self.criterion.as_ref(), self.keep), rows)
+        with_extra_words(self.own_values(), rows)
     }
 
     /// Returns the rows for a target with the features `target`: on each axis, the first alternative that it supports.
     /// `Err`: the last alternative of an axis, and the feature that it needs.
     pub fn select(&self, target: &[Feature]) -> Result<Selection, MissingFeature> {
-        let given = description_values(&self.attributes, self.criterion.as_ref(), self.keep);
+        let given = self.own_values();
         let mut rows = Vec::with_capacity(self.choices.len());
         for chosen in &self.choices {
             let mut unsupported = None;

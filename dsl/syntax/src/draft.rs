@@ -3,7 +3,7 @@
 //! Input: a description as written. Output: a [`Draft`] in which every function is type-checked and lowered, and lists
 //! what it reads, including through helpers. A function with an error is reported and omitted.
 
-use fragbuf_model::{Draft, Format, Keep, Spanned, Unused, UserFunction, codes};
+use fragbuf_model::{Draft, Format, Keep, Resumable, Spanned, Unused, UserFunction, codes};
 
 use crate::check;
 use crate::environment::{Environment, Signature};
@@ -12,6 +12,7 @@ use crate::lower;
 use crate::raw_function::{RawFunction, Role};
 use crate::reads;
 use crate::report::Report;
+use crate::resumable::Obstacle;
 use crate::suspicious;
 use crate::tree::Function;
 use crate::types::Type;
@@ -47,6 +48,11 @@ pub(crate) fn build(description: RawDescription, report: &mut Report) -> Draft {
             wgsl: lowered.source,
             lines: lowered.lines,
             reads: reads::of(function, &helpers),
+            resumable: None,
+        };
+        let user = match role {
+            Role::Resolve => with_parts(user, function, &environment),
+            _ => user,
         };
         add_function(&mut draft, role, user);
     }
@@ -67,6 +73,24 @@ fn unused(
     let variables = checked.iter().filter_map(|(_, function)| function.as_ref()).flat_map(|function| &function.unused);
     let variables = variables.map(|name| Spanned::new(Unused::Variable(name.value.clone()), name.span.clone()));
     functions.chain(variables).collect()
+}
+
+/// Adds the parts of an effect, or what prevents them.
+fn with_parts(user: UserFunction, function: &Function, environment: &Environment) -> UserFunction {
+    let parts = lower::resumable(function, &environment.helpers);
+    let resumable = parts.map_err(Obstacle::help).map(|parts| {
+        let [begin, advance, end] = [parts.begin, parts.advance, parts.end];
+        let part = |name: &str, source: lower::WgslFunction| UserFunction {
+            name: name.to_owned(),
+            wgsl: source.source,
+            lines: source.lines,
+            ..user.clone()
+        };
+        let [first, second, third] = lower::PARTS;
+        let (begin, advance, end) = (part(first, begin), part(second, advance), part(third, end));
+        Box::new(Resumable { members: parts.members, begin, advance, end })
+    });
+    UserFunction { resumable: Some(resumable), ..user }
 }
 
 fn add_function(draft: &mut Draft, role: &Role, function: UserFunction) {

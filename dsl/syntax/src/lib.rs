@@ -36,6 +36,7 @@ mod raw_function;
 mod reads;
 mod reference;
 mod report;
+mod resumable;
 mod row;
 mod suspicious;
 mod token_limits;

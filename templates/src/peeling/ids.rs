@@ -1,6 +1,6 @@
 //! Peeling of fragments with equal depths by their ids.
 
-use super::layers::{by_slot, layers, slots};
+use super::layers::{by_slot, joining, layers, slots};
 use super::{accumulated, edits};
 use crate::vocabulary::{
     Access, Capability, Compare, Condition, DepthState, Edit, Element, Feature, Pass, Resource, Row, Step, Template,
@@ -16,6 +16,23 @@ pub(super) fn id_pairs() -> Row {
         "yes, until none is left: each iteration stores the least and the greatest id left in the nearest depth",
         "D13 §3.1.2, Alg. 1 (F2B-2P)",
     )
+}
+
+/// Peels layers, and fragments of equal depth by their ids where a layer has several.
+pub(super) fn ids_on_demand() -> Row {
+    let row = by_ids(
+        ON_DEMAND,
+        template!("peeling/ids_on_demand"),
+        "ids_on_demand",
+        "yes, until none is left: each iteration stores the nearest depth if one fragment has it, else as `id_pairs`",
+        "D13 §5",
+    );
+    Row {
+        // The first fragment of a layer is stored before it is known whether there are others: no pass can count it.
+        requires: [row.requires.as_slice(), &[Capability::OnePerSlot]].concat(),
+        edits: [edits(&["window", "found"], Vec::new()), vec![find_first_layer(), by_slot()]].concat(),
+        ..row
+    }
 }
 
 /// As [`id_pairs`], from the front and from the back.
@@ -74,13 +91,14 @@ pub(super) fn id_pairs_tested() -> Row {
     }
 }
 
-/// The sides, and the slots of an iteration: two ids of each side.
-const ONE_SIDE: [&str; 2] = ["1", "2"];
-const BOTH_SIDES: [&str; 2] = ["2", "4"];
+/// The sides; the slots of an iteration, two ids of each side; the words of what an iteration finds.
+const ONE_SIDE: [&str; 3] = ["1", "2", "4"];
+const ON_DEMAND: [&str; 3] = ["1", "2", "5"];
+const BOTH_SIDES: [&str; 3] = ["2", "4", "4"];
 
 /// Returns a row that peels by ids from this number of sides, with this number of slots.
 fn by_ids(
-    [sides, number_of_slots]: [&'static str; 2],
+    [sides, number_of_slots, found_words]: [&'static str; 3],
     template: Template,
     key: &str,
     summary: &'static str,
@@ -93,27 +111,34 @@ fn by_ids(
     let window =
         "the key of the layer; the ids between which its fragments are left, the greater inverted; EMPTY: all are";
     let found = "the key of the next layer; the least and the greatest id of this one, the latter inverted; 0: other ids are between";
-    let first = Pass::geometry("nearest_layer", "nearest_layer").uses_rechecked("window");
     let find = Pass::geometry("find_ids", "find_in_layer");
     let row = layers(key, summary, paper);
     Row {
         template: Some(template),
-        resources: [vec![words("window", "3", window).over_iterations(), words("found", "4", found)], accumulated()]
-            .concat(),
+        resources: [
+            vec![words("window", "3", window).over_iterations(), words("found", found_words, found)],
+            accumulated(),
+        ]
+        .concat(),
         uses: vec![Use::new("window", Access::Read), Use::rechecked("found"), Use::new("remaining", Access::Atomic)],
         provides: [row.provides.as_slice(), &[Capability::TellsIdsApart]].concat(),
-        requires: [row.requires.as_slice(), &[Capability::TotalOrder]].concat(),
+        requires: [joining(&row).as_slice(), &[Capability::TotalOrder]].concat(),
         conditions: [row.conditions.as_slice(), &[has_values()]].concat(),
         constants: slots(number_of_slots),
         edits: [
             // Before a pass that counts what the storage needs.
             vec![Edit::First(vec![Step::Pass(find)])],
             edits(&["window", "found"], Vec::new()),
-            vec![Edit::First(vec![Step::Pass(first)]), by_slot()],
+            vec![find_first_layer(), by_slot()],
         ]
         .concat(),
         ..row
     }
+}
+
+/// Finds the first layers before the loop.
+fn find_first_layer() -> Edit {
+    Edit::First(vec![Step::Pass(Pass::geometry("nearest_layer", "nearest_layer").uses_rechecked("window"))])
 }
 
 /// Requires a word of a fragment beside its key.

@@ -37,6 +37,11 @@ pub(super) fn both_sides() -> Row {
         let keys = Resource::new(name, Element::Word, summary).by("side", "2").by("pixel", "pixels");
         keys.cleared(u32::MAX).over_iterations()
     };
+    let row = layers(
+        "both_sides",
+        "yes, until none is left: each iteration stores the nearest and the farthest depth that are left",
+        "D13 §3.1.3, §3.2.1; Bavoil & Myers 2008",
+    );
     Row {
         template: Some(template!("peeling/both_sides")),
         resources: [
@@ -52,11 +57,8 @@ pub(super) fn both_sides() -> Row {
         .concat(),
         constants: slots("2"),
         edits: [layer_edits(), vec![by_slot()]].concat(),
-        ..layers(
-            "both_sides",
-            "yes, until none is left: each iteration stores the nearest and the farthest depth that are left",
-            "D13 §3.1.3, §3.2.1; Bavoil & Myers 2008",
-        )
+        requires: joining(&row),
+        ..row
     }
 }
 
@@ -73,6 +75,7 @@ pub(super) fn bucket_layers() -> Row {
         "yes, until none is left: each iteration stores the nearest and the farthest depth that are left in each bucket",
         "Liu et al. 2009; D13 §3.1.4 (BUN)",
     );
+    let requires = joining(&row);
     Row {
         template: Some(template!("peeling/bucket_layers")),
         resources: [
@@ -97,6 +100,7 @@ pub(super) fn bucket_layers() -> Row {
         ]
         .concat(),
         constants: slots("2 * PEELING_BUCKETS"),
+        requires,
         edits: [edits(&[], next_layers()), vec![Edit::First(vec![Step::Pass(first)]), by_slot()]].concat(),
         ..row
     }
@@ -111,7 +115,7 @@ pub(super) fn layers(key: &str, summary: &'static str, paper: &'static str) -> R
             Use::new("remaining", Access::Atomic),
         ],
         calls: vec!["addressing", "counters"],
-        provides: vec![Capability::KeepsLater, Capability::DividesLayers],
+        provides: vec![Capability::KeepsLater, Capability::DividesLayers, Capability::LayersInOrder],
         requires: [&[Capability::KeepsAll], CONTINUES.as_slice()].concat(),
         conditions: vec![depth_key(), keeps_all()],
         needs: vec![Feature::FragmentAtomics],
@@ -119,6 +123,11 @@ pub(super) fn layers(key: &str, summary: &'static str, paper: &'static str) -> R
         hazards: vec![not_peeled()],
         ..Row::new("peeling", key, summary, paper)
     }
+}
+
+/// Returns what a row requires whose iterations store fragments of several depths or ids: their parts are joined later.
+pub(super) fn joining(row: &Row) -> Vec<Capability> {
+    [row.requires.as_slice(), &[Capability::JoinsParts]].concat()
 }
 
 /// Returns the edits that find the first layers before the loop, and exchange the keys at the end of each iteration.

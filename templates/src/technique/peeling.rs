@@ -152,6 +152,19 @@ pub(super) fn techniques() -> Vec<Technique> {
             ],
         },
         Technique {
+            key: "f2b_1p".to_owned(),
+            title: "F2B-1P",
+            paper: "D13 §5",
+            summary: "one layer per draw of the scene if it has one fragment, else as `f2b_2p` with half of its draws",
+            keep: KeepDefault::All,
+            choices: vec![
+                ("storage", "layer_slots"),
+                ("sync", "slot_counter"),
+                ("peeling", "ids_on_demand"),
+                ("sort", "none"),
+            ],
+        },
+        Technique {
             key: "dual".to_owned(),
             title: "DUAL",
             paper: "Bavoil & Myers 2008; D13 §3.1.1",

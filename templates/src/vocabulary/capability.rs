@@ -34,6 +34,7 @@ names! {
         ReportsWholeFragments "a storage that reports each lost fragment as a whole, with key and payload";
         KeepsArrival "kept fragments in the order of arrival if their keys are equal";
         Indexed "kept fragments with an index";
+        OnePerSlot "a storage of one fragment for each slot of an iteration of peeling";
         Streams "a storage that passes fragments on in order, two neighbours at a time";
         // Of the fragments that reach a storage.
         NoCull "a storage that receives every fragment, without a cull";
@@ -49,6 +50,8 @@ names! {
         TellsIdsApart "iterations that tell fragments with equal keys apart by their ids";
         KeepsLater "peeling, whose iterations keep what earlier ones leave";
         Resumes "an effect that can continue with further fragments of a pixel";
+        JoinsParts "an effect whose results for parts of a pixel's fragments can be joined";
+        LayersInOrder "layers in the order of depth";
         // For the caller.
         CountsEvents "counters of every event of a frame, not only of losses";
         LeavesDepth "the depth of the nearest fragment in a depth buffer";

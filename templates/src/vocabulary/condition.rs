@@ -33,6 +33,10 @@ pub struct DescriptionValues {
     pub has_criterion: bool,
     /// Whether the payload has an attribute `color` of a format that effects can read.
     pub has_color: bool,
+    /// Whether the effect is a closure that can be interrupted between two fragments.
+    pub is_resumable: bool,
+    /// 32-bit words that the effect keeps between the iterations of peeling.
+    pub resumed_words: u32,
 }
 
 impl DescriptionValues {
@@ -51,6 +55,8 @@ impl DescriptionValues {
             "value_words" => self.entry_words().saturating_sub(1),
             "depth_key" => u64::from(!self.has_criterion),
             "color" => u64::from(self.has_color),
+            "resumable" => u64::from(self.is_resumable),
+            "resumed_words" => u64::from(self.resumed_words),
             _ => return None,
         })
     }
@@ -65,13 +71,29 @@ impl DescriptionValues {
     }
 }
 
+impl Formula {
+    /// Returns the condition that the formula is not 0, for messages.
+    pub fn in_words(&self) -> String {
+        let symbol = DescriptionValues::symbols().find(|symbol| *symbol.name == *self.0);
+        let meaning = symbol.and_then(|symbol| symbol.meaning.strip_prefix("1 if ")?.split(';').next());
+        meaning.map_or_else(|| format!("`{self}` holds"), str::to_owned)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn every_symbol_of_a_description_has_a_value() {
-        let given = DescriptionValues { keep: Some(8), payload_words: 3, has_criterion: true, has_color: false };
+        let given = DescriptionValues {
+            keep: Some(8),
+            payload_words: 3,
+            has_criterion: true,
+            has_color: false,
+            is_resumable: false,
+            resumed_words: 4,
+        };
         for symbol in DescriptionValues::symbols() {
             let value = given.value(symbol.name);
             assert!(value.is_some_and(|value| (symbol.range.0..=symbol.range.1).contains(&value)), "{}", symbol.name);

@@ -91,7 +91,7 @@ impl Symbol {
 const WORD: u64 = u32::MAX as u64;
 
 /// The symbols of every plan, in the order of the fields of the shaders' `frame`.
-pub const SYMBOLS: [Symbol; 17] = [
+pub const SYMBOLS: [Symbol; 19] = [
     symbol("width", "columns of the frame", BindingTime::Allocation, Setter::Caller, (1, WORD)),
     symbol("height", "rows of the frame or slice", BindingTime::Allocation, Setter::Caller, (1, WORD)),
     symbol("first_row", "the first row of a slice of the frame", BindingTime::Iteration, Setter::Device, (0, WORD)),
@@ -133,6 +133,16 @@ pub const SYMBOLS: [Symbol; 17] = [
     described("value_words", "words of a stored fragment without the key", (0, WORD)),
     described("depth_key", "1 if depth is the key; 0 with a criterion", (0, 1)),
     described("color", "1 if the payload has a `color` of format rgba8, rgba16 or vec4; else 0", (0, 1)),
+    described(
+        "resumable",
+        "1 if the effect is a closure that can be interrupted between two fragments; else 0",
+        (0, 1),
+    ),
+    described(
+        "resumed_words",
+        "words that the effect keeps between the iterations of peeling: those of a closure's variables, 4 of a named effect",
+        (0, WORD),
+    ),
 ];
 
 /// Returns whether a name has a meaning in every formula, so that no constant of a row can have it.

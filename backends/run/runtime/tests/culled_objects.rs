@@ -11,7 +11,7 @@ use crate::peeling::{SIZE, SLICES, shaders_of, sizing};
 use crate::stage::{BACKGROUND, FORMAT, device, read_counters, renderer, technique, vertex_buffer};
 
 /// A technique for every kind of peeling.
-const PEELED: [&str; 8] = ["k_peeling", "f2b", "f2b_ll", "f2b_2p", "f2b_3p", "dual", "dual_2p", "bun"];
+const PEELED: [&str; 9] = ["k_peeling", "f2b", "f2b_ll", "f2b_1p", "f2b_2p", "f2b_3p", "dual", "dual_2p", "bun"];
 
 /// Returns quads whose depths are in the order of no axis. Three have the depth of another.
 pub(crate) fn scene() -> Vec<Quad> {

@@ -43,6 +43,18 @@ fn iterations_from_one_side(fragments: &[Quad]) -> u32 {
     layers(fragments).iter().map(|ids| ids.len().div_ceil(2) as u32).sum()
 }
 
+/// Returns the iterations that peeling by ids on demand needs: one for a layer of one fragment; else one to find ids, and one for every
+/// two of them.
+fn iterations_on_demand(fragments: &[Quad]) -> u32 {
+    let mut layers: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    fragments.iter().map(words).for_each(|(depth, id)| layers.entry(depth).or_default().push(id));
+    let of_layer = |ids: &Vec<u32>| match ids.len() {
+        1 => 1,
+        _ => 1 + ids.iter().collect::<BTreeSet<_>>().len().div_ceil(2) as u32,
+    };
+    layers.values().map(of_layer).sum()
+}
+
 /// Returns the iterations that two sides need: each takes two ids of its layer, and passes on when the layer is empty.
 fn iterations_from_both_sides(fragments: &[Quad]) -> u32 {
     let mut left: Vec<u32> = layers(fragments).iter().map(|ids| ids.len() as u32).collect();
@@ -125,6 +137,19 @@ fn ids_of_a_layer_are_peeled_two_at_a_time() {
         let set = [("peeling", "id_pairs"), EVERY_EVENT, ("sort", "insertion"), ("sort.layers", "64")];
         assert_ids_are_peeled(&technique(key, &set), iterations_from_one_side, 0);
     }
+}
+
+/// D13 §5: draws are saved where layers have one fragment.
+#[test]
+fn ids_are_peeled_on_demand() {
+    let variant = technique("f2b_1p", &[EVERY_EVENT]);
+    assert_ids_are_peeled(&variant, iterations_on_demand, 0);
+    let quads = many_depths(2, 30);
+    let (seen, loops, counters) = counted(&device(), &variant, &quads, None);
+    assert_eq!(first_difference(&seen, &image(&quads, SIZE, None, BACKGROUND)), None);
+    assert_eq!((counters.lost(), loops[0].end), (0, LoopEnd::ConditionMet));
+    let layers: OfPixel = |fragments| depths(fragments).len() as u32;
+    assert_eq!(loops[0].iterations, most(&quads, 0..SIZE[1], layers));
 }
 
 /// The last iteration finds that nothing is left.
@@ -237,7 +262,7 @@ fn equal_ids_are_counted() {
     let stage = device();
     let quad = |depth, red, green| Quad { x: [0, 5], y: [0, 3], depth, color: [red, green, 40, 128], id: 0 };
     let quads = [quad(0.5, 1, 2), quad(0.5, 9, 7), quad(0.5, 1, 2), quad(0.25, 1, 2), quad(0.5, 4, 4), quad(0.5, 1, 2)];
-    for key in ["f2b_2p", "f2b_3p", "dual_2p"] {
+    for key in ["f2b_1p", "f2b_2p", "f2b_3p", "dual_2p"] {
         let (seen, _, counters) = counted(&stage, &technique(key, &[EVERY_EVENT]), &quads, None);
         assert_eq!((counters.get("equal_keys"), counters.lost()), (2 * 15, 2 * 15), "{key}");
         let kept = |fragments: Vec<Quad>| {
@@ -263,11 +288,18 @@ fn fragments_that_slots_leave_are_counted() {
         pixels(0..SIZE[1]).map(of_pixel).sum()
     };
     let between = |id: usize, ids: usize| id >= 1 && id + 1 < ids;
+    // Two iterations on demand store two fragments: of one layer, or of two if the first has one fragment.
+    let on_demand =
+        |pixel| layers(&at(&quads, pixel)).iter().map(|ids| ids.len() as u64).sum::<u64>().saturating_sub(2);
+    let on_demand = pixels(0..SIZE[1]).map(on_demand).sum();
     let cases = [
         ("f2b_2p", "1", left(&|layer, id, ids| layer > 0 || between(id, ids))),
         // The last iteration only counts.
         ("f2b_3p", "2", left(&|layer, id, ids| layer > 0 || between(id, ids))),
         ("f2b_2p", "1024", 0),
+        // One fragment of a new layer stays, and all others are counted.
+        ("f2b_1p", "1", left(&|layer, id, _| layer > 0 || id > 0)),
+        ("f2b_1p", "2", on_demand),
     ];
     assert!(cases[0].2 > 0);
     for (key, iterations, expected) in cases {

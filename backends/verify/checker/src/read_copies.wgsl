@@ -4,13 +4,15 @@
 @compute @workgroup_size(1)
 fn read_copies() {
     let pixel = pixel_index(vec2<f32>(0.5));
-    let copies = count_copies(pixel);
+    let copies = count_read(pixel, 0u);
     let copy = copied(pixel);
 }
 
-fn count_copies(pixel: u32) -> u32 {
+/// Returns how many fragments the effect reads if the storage holds `stored`: all of them and the copies, or none where an
+/// iteration leaves what it has stored to a later one.
+fn count_read(pixel: u32, stored: u32) -> u32 {
     peeling_resume(pixel);
-    return peeling_layer_count(0u);
+    return peeling_layer_count(stored);
 }
 
 fn copied(pixel: u32) -> Packed {

@@ -53,8 +53,8 @@ pub struct ReadOut {
     walk: Bytecode,
     /// From a cursor to a fragment.
     read: Bytecode,
-    /// From a pixel to the number of copies of a fragment that it has beside those that the storage holds, and to the fragment;
-    /// where iterations keep what earlier ones displace.
+    /// From a pixel and the number of fragments that the storage holds to the number that the effect reads, copies of a fragment included; and
+    /// from the pixel to this fragment. Where iterations keep what earlier ones displace.
     copies: Option<(Bytecode, Bytecode)>,
     /// The key that no fragment of the k best exceeds, where the storage provides one.
     pub(crate) bound: Option<Bytecode>,
@@ -99,7 +99,7 @@ impl ReadOut {
             index: required("pixel_index")?,
             walk: required("walk_to")?,
             read: required("storage_read")?,
-            copies: compiled(READ_COPIES, "count_copies")?.zip(compiled(READ_COPIES, "copied")?),
+            copies: compiled(READ_COPIES, "count_read")?.zip(compiled(READ_COPIES, "copied")?),
             bound: compiled(READ_BOUND, "storage_bound")?,
             source: source(READ_OUT),
             copies_source: source(READ_COPIES),
@@ -146,6 +146,8 @@ impl ReadOut {
                 self.call((&self.walk, &self.source), &[&[pixel], &[(entries.len() - copies) as u32]], memory, size)?
                     [0];
             if cursor == u32::MAX {
+                let stored = entries.len() - copies;
+                entries.truncate(self.count_read(memory, size, [pixel, stored as u32])?.unwrap_or(entries.len()));
                 return Ok(entries);
             }
             if !visited.insert(cursor) || entries.len() - copies == most {
@@ -158,10 +160,21 @@ impl ReadOut {
 
     /// Returns the copies of a fragment that the pixel has beside those that the storage holds.
     fn copies(&self, memory: &mut Memory, size: [u32; 2], pixel: u32) -> Result<Vec<Vec<u32>>, ReadOutError> {
-        let Some((count, copy)) = &self.copies else { return Ok(Vec::new()) };
-        let count = self.call((count, &self.copies_source), &[&[pixel]], memory, size)?[0] as usize;
+        let Some((_, copy)) = &self.copies else { return Ok(Vec::new()) };
+        let count = self.count_read(memory, size, [pixel, 0])?.unwrap_or(0);
         let copy = self.call((copy, &self.copies_source), &[&[pixel]], memory, size)?;
         if count > LONGEST { Err(ReadOutError::Cycle) } else { Ok(vec![copy; count]) }
+    }
+
+    /// Returns how many fragments of a pixel the effect reads if the storage holds `stored`; `None`: all.
+    fn count_read(
+        &self,
+        memory: &mut Memory,
+        size: [u32; 2],
+        [pixel, stored]: [u32; 2],
+    ) -> Result<Option<usize>, ReadOutError> {
+        let Some((count, _)) = &self.copies else { return Ok(None) };
+        Ok(Some(self.call((count, &self.copies_source), &[&[pixel], &[stored]], memory, size)?[0] as usize))
     }
 
     /// Copies the buffers that a walk may write.

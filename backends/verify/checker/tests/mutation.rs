@@ -141,6 +141,11 @@ const IDS: &[Check] = &[
     ("ab_sb", &[("peeling", "id_pairs")], "wgsl", Model::Relaxed),
     ("f2b_fab", &[("peeling", "id_pairs"), ("peeling.iterations", "1")], "wgsl", Model::Sequential),
 ];
+const IDS_ON_DEMAND: &[Check] = &[
+    ("f2b_1p", &[("counters", "all")], "wgsl", Model::Sequential),
+    ("f2b_1p", &[("peeling.iterations", "2")], "wgsl", Model::Sequential),
+    ("f2b_1p", &[("peeling.iterations", "1")], "wgsl", Model::Relaxed),
+];
 const IDS_TESTED: &[Check] = &[
     ("f2b_3p", &[("counters", "all")], "glsl", Model::Sequential),
     ("ab_sb", &[("peeling", "id_pairs_tested")], "spirv", Model::Relaxed),
@@ -173,7 +178,7 @@ const SINGLE_CUT: &[(&str, &str)] =
 const SINGLE_AFTER_PREPASS: &[(&str, &str)] =
     &[("storage", "single"), ("k", "1"), ("peeling", "front_to_back"), ("cull", "z_prepass")];
 
-const MUTATED: [(&str, &str, &[Check]); 30] = [
+const MUTATED: [(&str, &str, &[Check]); 31] = [
     ("storage", "stream_array", STREAM),
     ("storage", "checksummed_array", CHECKED),
     ("storage", "multipass_array", REPEATED),
@@ -201,6 +206,7 @@ const MUTATED: [(&str, &str, &[Check]); 30] = [
     ("peeling", "bucket_layers", BUCKET_LAYERS),
     ("peeling", "id_pairs", IDS),
     ("peeling", "id_pairs_tested", IDS_TESTED),
+    ("peeling", "ids_on_demand", IDS_ON_DEMAND),
     ("peeling", "id_pairs_both_sides", IDS_OF_BOTH_SIDES),
     ("storage", "layer_slots", SLOTS),
     ("storage", "adaptive_ranges", PARTS),

@@ -6,6 +6,9 @@ const COLORS: &str = "colours are none of the checker's: test `peeling_slots` of
 /// The reason of mutants of what a loop reports when it ends at its limit.
 const LIMIT: &str = "only the report of the loop's end: tests `peeling` and `peeling_slots` of the runtime";
 
+/// The reason of mutants that begin a layer again and again: the loop ends at its limit and counts what is left, as the hazard permits.
+const SAME_LAYER: &str = "the loop ends at its limit: test `peeling_slots` of the runtime counts iterations";
+
 /// Row, line, mutated line, and the reason why the checker cannot kill the mutant.
 pub(crate) const OF_SLOTS: &[(&str, &str, &str, &str)] = &[
     (
@@ -338,4 +341,71 @@ pub(crate) const OF_SLOTS: &[(&str, &str, &str, &str)] = &[
     ("peeling/id_pairs_both_sides", "accumulated_join(3u, 2u, pixel);", "accumulated_join(3u, 3u, pixel);", COLORS),
     ("peeling/id_pairs_tested", "accumulated_join(PEELING_LEAST, PEELING_GREATEST, accumulated_pixel);", "", COLORS),
     ("peeling/id_pairs_tested", "accumulated_slot = slot;", "", COLORS),
+    ("peeling/ids_on_demand", "return true;", "", "more iterations: every layer is peeled by ids"),
+    ("peeling/ids_on_demand", "accumulated_join(PEELING_LEAST, PEELING_GREATEST, pixel);", "", COLORS),
+    (
+        "peeling/ids_on_demand",
+        "count_loss(NOT_CONVERGED); remaining_store(1u);",
+        "remaining_store(1u); count_loss(NOT_CONVERGED);",
+        LIMIT,
+    ),
+    ("peeling/ids_on_demand", "remaining_store(1u);", "", LIMIT),
+    ("peeling/ids_on_demand", "remaining_store(1u);", "remaining_store(0u);", LIMIT),
+    ("peeling/ids_on_demand", "remaining_store(1u);", "remaining_store(2u);", LIMIT),
+    (
+        "peeling/ids_on_demand",
+        "id_pairs_find(PEELING_FRONT, pixel, id); id_pairs_leave(PEELING_FRONT, pixel);",
+        "id_pairs_leave(PEELING_FRONT, pixel); id_pairs_find(PEELING_FRONT, pixel, id);",
+        "what both write is read after the pass",
+    ),
+    ("peeling/ids_on_demand", "id_pairs_find(PEELING_FRONT, pixel, id);", "", SAME_LAYER),
+    (
+        "peeling/ids_on_demand",
+        "window_store(ID_PAIRS_LEAST, PEELING_FRONT, pixel, found_load(ID_PAIRS_LEAST, PEELING_FRONT, pixel));",
+        "",
+        SAME_LAYER,
+    ),
+    (
+        "peeling/ids_on_demand",
+        "if found_atomic_min(PEELING_TAKEN, PEELING_FRONT, pixel, 0u) == EMPTY {",
+        "if found_atomic_min(PEELING_TAKEN, PEELING_FRONT, pixel, 1u) == EMPTY {",
+        "any word but EMPTY takes the slot",
+    ),
+    (
+        "peeling/ids_on_demand",
+        "if key < window_load(ID_PAIRS_KEY, PEELING_FRONT, pixel) {",
+        "if key <= window_load(ID_PAIRS_KEY, PEELING_FRONT, pixel) {",
+        "a minimum that changes nothing",
+    ),
+    ("peeling/ids_on_demand", "return false;", "", "what follows returns the same: the key is not the layer's"),
+    (
+        "peeling/ids_on_demand",
+        "return frame.iteration == 0u;",
+        "return frame.iteration == 1u;",
+        "two fragments take two iterations: test `peeling_slots` of the runtime has one",
+    ),
+    (
+        "peeling/ids_on_demand",
+        "return;",
+        "",
+        "no iteration follows that reads what is found; a pixel without a layer finds none",
+    ),
+    (
+        "peeling/ids_on_demand",
+        "return;",
+        "",
+        "no iteration follows that reads what is found; a pixel without a layer finds none",
+    ),
+    (
+        "peeling/ids_on_demand",
+        "window_store(ID_PAIRS_KEY, PEELING_FRONT, pixel, found_load(ID_PAIRS_NEXT, PEELING_FRONT, pixel)); window_store(ID_PAIRS_LEAST, PEELING_FRONT, pixel, EMPTY);",
+        "window_store(ID_PAIRS_LEAST, PEELING_FRONT, pixel, EMPTY); window_store(ID_PAIRS_KEY, PEELING_FRONT, pixel, found_load(ID_PAIRS_NEXT, PEELING_FRONT, pixel));",
+        "one invocation per pixel, and no other reads them",
+    ),
+    (
+        "peeling/ids_on_demand",
+        "window_store(ID_PAIRS_LEAST, PEELING_FRONT, pixel, found_load(ID_PAIRS_LEAST, PEELING_FRONT, pixel)); window_store(ID_PAIRS_GREATEST, PEELING_FRONT, pixel, found_load(ID_PAIRS_GREATEST, PEELING_FRONT, pixel));",
+        "window_store(ID_PAIRS_GREATEST, PEELING_FRONT, pixel, found_load(ID_PAIRS_GREATEST, PEELING_FRONT, pixel)); window_store(ID_PAIRS_LEAST, PEELING_FRONT, pixel, found_load(ID_PAIRS_LEAST, PEELING_FRONT, pixel));",
+        "one invocation per pixel, and no other reads them",
+    ),
 ];

@@ -56,7 +56,7 @@ const LAST_OF_FLOATS: &[(&str, &str)] =
 
 const UNPEELED: &[(&str, &str)] = &[("objects", "unpeeled")];
 
-pub(crate) const VERDICTS: [Verdict; 128] = [
+pub(crate) const VERDICTS: [Verdict; 130] = [
     ("kb", &[], "wgsl", Model::Sequential, Hazard),
     ("kb", &[], "spirv", Model::Relaxed, Hazard),
     ("kb", LOCKED, "wgsl", Model::Sequential, Holds),
@@ -110,6 +110,8 @@ pub(crate) const VERDICTS: [Verdict; 128] = [
     ("dual_kb", &[], "wgsl", Model::Relaxed, Holds),
     ("f2b_2p", &[], "wgsl", Model::Sequential, Hazard),
     ("f2b_2p", &[], "wgsl", Model::Relaxed, Hazard),
+    ("f2b_1p", &[], "wgsl", Model::Sequential, Hazard),
+    ("f2b_1p", &[], "wgsl", Model::Relaxed, Hazard),
     ("f2b_3p", &[], "glsl", Model::Sequential, Hazard),
     ("f2b_3p", &[], "spirv", Model::Relaxed, Hazard),
     ("f2b_ll", UNPEELED, "wgsl", Model::Sequential, Holds),

@@ -192,12 +192,12 @@ impl Context<'_> {
         let cause = implied
             .filter(|(_, (_, implied))| *implied == capability)
             .find_map(|(row, (when, _))| Some((row, when, self.cause(when, combination)?)));
-        let help = match self.fixes(index, combination) {
-            Some(fixes) => format!("choose {fixes}"),
-            None => cause
-                .as_ref()
-                .and_then(|(_, _, cause)| cause.help.clone())
-                .unwrap_or_else(|| self.more_changes(index, capability, combination)),
+        let change = cause.as_ref().and_then(|(_, _, cause)| cause.help.as_ref());
+        let help = match (change, self.fixes(index, combination)) {
+            (Some(change), Some(fixes)) => format!("{change}, or choose {fixes}"),
+            (Some(change), None) => change.clone(),
+            (None, Some(fixes)) => format!("choose {fixes}"),
+            (None, None) => self.more_changes(index, capability, combination),
         };
         let message =
             format!("{} requires {}, but no choice provides it", name(combination[index]), capability.meaning());
@@ -220,7 +220,7 @@ impl Context<'_> {
             diagnostic = diagnostic.label(&chosen.span, format!("{} is chosen here", name(combination[index])));
         }
         if let Some((row, when, cause)) = &cause {
-            let text = format!("{} provides it only if `{when}` holds", name(row));
+            let text = format!("{} provides it only if {}", name(row), when.in_words());
             diagnostic = diagnostic.label(&cause.span, text);
         }
         for (other, row) in others {

@@ -38,6 +38,9 @@ impl Items<'_> {
         if mentions(&["color"]) {
             return self.color(is_legal);
         }
+        if mentions(&["resumable", "resumed_words"]) {
+            return self.effect();
+        }
         if mentions(&["payload_words", "entry_words", "value_words"]) {
             return self.words(is_legal);
         }
@@ -45,6 +48,13 @@ impl Items<'_> {
             return self.keep(is_legal);
         }
         self.criterion(is_legal).filter(|_| mentions(&["depth_key"]))
+    }
+
+    /// Returns the closure of the effect, with the change after which it can be interrupted.
+    fn effect(&self) -> Option<Cause> {
+        let function = self.draft.resolve.as_ref()?;
+        let help = function.resumable.as_ref()?.as_ref().err().map(|help| (*help).to_owned());
+        Some(Cause { span: function.span.clone(), help })
     }
 
     /// Returns the `keep` line, with the legal count that is nearest below.
@@ -154,7 +164,7 @@ impl Items<'_> {
     /// Returns the values of the description with another payload.
     fn values(&self, attributes: &[Attribute]) -> DescriptionValues {
         let criterion = self.draft.keep.as_ref().and_then(|keep| keep.criterion.as_ref());
-        description_values(attributes, criterion, self.given.keep)
+        description_values(attributes, criterion, self.draft.resolve.as_ref(), self.given.keep)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use fragbuf_templates::vocabulary::DescriptionValues;
 
-use crate::{Attribute, Diagnostic, Diagnostics, Draft, Format, UserFunction, codes};
+use crate::{Attribute, Diagnostic, Diagnostics, Draft, Format, Resumable, UserFunction, codes};
 
 /// Returns the description's attributes, or the papers' payload.
 pub(super) fn attributes(draft: &Draft, diagnostics: &mut Diagnostics) -> Vec<Attribute> {
@@ -29,10 +29,14 @@ pub(super) fn attributes(draft: &Draft, diagnostics: &mut Diagnostics) -> Vec<At
     draft.attributes.clone()
 }
 
+/// The words that named effects keep: the premultiplied colour composited so far, and the transmittance behind it.
+const COMPOSITED_WORDS: u32 = 4;
+
 /// Returns the values of a description that the conditions of rows read, without the extra words of rows.
 pub(crate) fn description_values(
     attributes: &[Attribute],
     criterion: Option<&UserFunction>,
+    resolve: Option<&UserFunction>,
     keep: Option<u32>,
 ) -> DescriptionValues {
     let color = attributes.iter().find(|attribute| attribute.name.value == "color");
@@ -42,5 +46,7 @@ pub(crate) fn description_values(
         has_criterion: criterion.is_some(),
         has_color: color
             .is_some_and(|color| matches!(color.format.value, Format::Rgba8 | Format::Rgba16 | Format::Vec4)),
+        is_resumable: resolve.is_some_and(|closure| closure.resumable().is_some()),
+        resumed_words: resolve.map_or(COMPOSITED_WORDS, |closure| closure.resumable().map_or(0, Resumable::words)),
     }
 }

@@ -15,7 +15,12 @@ impl Lowering<'_> {
             return;
         }
         match &each.sequence {
-            Sequence::Range { .. } => return self.range_loop(&each.sequence, &each.body, span),
+            Sequence::Range { .. } => {
+                let is_in_each = std::mem::take(&mut self.is_in_each);
+                self.range_loop(&each.sequence, &each.body, span);
+                self.is_in_each = is_in_each;
+                return;
+            }
             Sequence::Fragments { index, fragment, reversed: false } => {
                 self.names.open();
                 self.each_fragment(*index, *fragment, &each.body, span);

@@ -2,6 +2,8 @@
 //!
 //! Input: a checked function. Output: lines of WGSL. The other files of this folder add the constructs.
 
+use std::collections::BTreeSet;
+
 use fragbuf_model::SourceSpan;
 
 use super::lines::Lines;
@@ -33,6 +35,14 @@ pub(super) struct Lowering<'a> {
     pub dead: bool,
     /// Whether float literals have a suffix: WGSL evaluates constants without suffixes in higher precision.
     pub suffixed: bool,
+    /// The variables that are members of a struct, and declared there.
+    pub kept: BTreeSet<VariableId>,
+    /// Whether `break` ends the loop of an effect that can be interrupted.
+    pub is_in_each: bool,
+    /// Whether `return` ends such an effect from within its loop.
+    pub is_in_effect: bool,
+    /// Whether one has.
+    pub returns_in_effect: bool,
 }
 
 impl<'a> Lowering<'a> {
@@ -46,6 +56,10 @@ impl<'a> Lowering<'a> {
             wgsl_names: vec![String::new(); function.variables.len()],
             dead: false,
             suffixed: false,
+            kept: BTreeSet::new(),
+            is_in_each: false,
+            is_in_effect: false,
+            returns_in_effect: false,
         }
     }
 

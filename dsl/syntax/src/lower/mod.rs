@@ -13,14 +13,17 @@ mod names;
 mod needs;
 mod numbers;
 mod ranges;
+mod resumable;
 mod source;
 mod statements;
 
 use crate::environment::Signature;
 use crate::tree::Function;
 use crate::types::Type;
-use lines::WgslFunction;
 use lowering::{Destination, Lowering};
+
+pub(crate) use lines::WgslFunction;
+pub(crate) use resumable::{NAMES as PARTS, resumable};
 
 /// Lowers a function to WGSL.
 pub(crate) fn function(function: &Function, helpers: &[Signature]) -> WgslFunction {

@@ -3,6 +3,7 @@
 //! Input: typed statements, and the destination of the final value. Output: lines. Nothing is written after a diverging
 //! line: some validators reject unreachable code.
 
+use fragbuf_model::resumable::Progress;
 use fragbuf_model::{SourceSpan, mangled};
 
 use super::lowering::{Destination, Lowering};
@@ -26,24 +27,26 @@ impl Lowering<'_> {
 
     /// Writes the statements and the value of a block without its braces.
     pub(super) fn block_contents(&mut self, block: &Block, destination: &Destination) {
-        self.statements(block);
+        self.statements(&block.statements);
         if let Some(value) = &block.value {
             self.store(value, destination);
         }
     }
 
-    fn statements(&mut self, block: &Block) {
-        for statement in &block.statements {
-            match statement {
-                Statement::Let { variable, value, span } => self.variable(*variable, value, span),
-                Statement::Expr(expr) => self.statement(expr, &Destination::Unused),
-            }
+    pub(super) fn statements(&mut self, statements: &[Statement]) {
+        statements.iter().for_each(|statement| self.one_statement(statement));
+    }
+
+    pub(super) fn one_statement(&mut self, statement: &Statement) {
+        match statement {
+            Statement::Let { variable, value, span } => self.variable(*variable, value, span),
+            Statement::Expr(expr) => self.statement(expr, &Destination::Unused),
         }
     }
 
     /// Writes the statements of a block inside an expression, and returns the source of its value.
     pub(super) fn flattened(&mut self, block: &Block) -> ExprSource {
-        self.statements(block);
+        self.statements(&block.statements);
         match &block.value {
             Some(value) => self.value(value),
             None => ExprSource::primary("0u"),
@@ -57,6 +60,7 @@ impl Lowering<'_> {
             (Kind::If(branch), _) if !self.is_select(branch, expr) => self.branch(branch, expr, destination),
             (Kind::Block(block), _) => self.block_contents(block, destination),
             (Kind::Return(_) | Kind::Break | Kind::Continue, _) => self.statement(expr, destination),
+            (_, Destination::Return) if self.is_in_effect => self.return_in_effect(expr),
             (_, Destination::Return) => {
                 let source = self.value(expr);
                 self.emit(format!("return {};", source.source), &expr.span);
@@ -80,7 +84,12 @@ impl Lowering<'_> {
                 self.store(value, &Destination::Return);
                 self.dead = true;
             }
-            Kind::Break => self.jump("break;", &expr.span),
+            Kind::Break => {
+                if self.is_in_each {
+                    self.progress(Progress::AfterLoop, &expr.span);
+                }
+                self.jump("break;", &expr.span);
+            }
             Kind::Continue => self.jump("continue;", &expr.span),
             // The value is unused: only the statements that it needs have an effect.
             _ if self.needs_statements(expr) => drop(self.value(expr)),
@@ -113,11 +122,14 @@ impl Lowering<'_> {
         if !ty.is_value() {
             return self.statement(value, &Destination::Unused);
         }
+        if self.kept.contains(&id) {
+            return self.store(value, &Destination::Assign(self.name_of(id)));
+        }
         // The statements of a block come first; the variable gets its value.
         let mut value = value;
         while let Kind::Block(block) = &value.kind {
             let Some(last) = &block.value else { return self.block_contents(block, &Destination::Unused) };
-            self.statements(block);
+            self.statements(&block.statements);
             value = last;
         }
         if let Kind::If(branch) = &value.kind
