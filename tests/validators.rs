@@ -13,18 +13,31 @@ use crate::tint;
 
 /// Validates each distinct file for which there is an external validator. Returns their number. Panics with every error.
 pub fn validate<'a>(files: impl Iterator<Item = &'a File>) -> usize {
+    validate_with(files, &tools)
+}
+
+/// As [`validate`], but without glslang's translations to SPIR-V, each of which costs a process: that is a tenth of a second, where
+/// compiling costs a millisecond. GLSL for OpenGL is only compiled, and GLSL for Vulkan, which cannot be, is left out.
+pub fn validate_untranslated<'a>(files: impl Iterator<Item = &'a File>) -> usize {
+    validate_with(files, &|file| {
+        let is_cheap = |tool: &Tool| ![GLSL_TO_SPIRV, VULKAN].contains(tool);
+        tools(file).into_iter().filter(is_cheap).collect()
+    })
+}
+
+fn validate_with<'a>(files: impl Iterator<Item = &'a File>, tools: &dyn Fn(&File) -> Vec<Tool>) -> usize {
     let files: Vec<&File> = files.collect();
     let mut seen = BTreeSet::new();
     let distinct = files.iter().copied();
-    let jobs: Vec<&File> =
-        distinct.filter(|file| tool(file).is_some() && seen.insert((suffix(file), file.target, &file.bytes))).collect();
-    let queue = Mutex::new(jobs.iter());
-    let diagnostics = Mutex::new(Vec::new());
+    let distinct: Vec<&File> = distinct
+        .filter(|file| !tools(file).is_empty() && seen.insert((suffix(file), file.target, &file.bytes)))
+        .collect();
+    let batches = batches(&distinct, tools);
+    let (queue, diagnostics) = (Mutex::new(batches.iter()), Mutex::new(Vec::new()));
     let work = || {
-        while let Some(file) = { queue.lock().unwrap().next() } {
-            if let Err(diagnostic) = accepted(file) {
-                diagnostics.lock().unwrap().push(diagnostic);
-            }
+        while let Some((tool, files)) = { queue.lock().unwrap().next() } {
+            let found = rejected(*tool, files);
+            diagnostics.lock().unwrap().extend(found);
         }
     };
     std::thread::scope(|scope| {
@@ -35,20 +48,32 @@ pub fn validate<'a>(files: impl Iterator<Item = &'a File>) -> usize {
     let (portable, rejected) = tint::rejected(&files);
     diagnostics.extend(rejected);
     assert!(diagnostics.is_empty(), "{}", diagnostics.join("\n\n"));
-    jobs.len() + portable
+    distinct.len() + portable
 }
 
-/// Returns the validator of a file and its arguments, without the file name.
-fn tool(file: &File) -> Option<(&'static str, Vec<&'static str>)> {
+/// A program with arguments, without the file names.
+#[derive(Clone, Copy, PartialEq, Hash)]
+struct Tool {
+    program: &'static str,
+    arguments: &'static [&'static str],
+    /// How many files one process checks. glslang links files of one process if it writes SPIR-V.
+    files: usize,
+}
+
+const GLSL: Tool = Tool { program: "glslangValidator", arguments: &[], files: 64 };
+const GLSL_TO_SPIRV: Tool = Tool { arguments: &["--target-env", "opengl"], files: 1, ..GLSL };
+const VULKAN: Tool = Tool { arguments: &["-V", "--target-env", "vulkan1.1", "-o", "out.spv"], files: 1, ..GLSL };
+const SPIRV: Tool = Tool { program: "spirv-val", arguments: &["--target-env", "vulkan1.1"], files: 1 };
+
+/// Returns the validators of a file.
+fn tools(file: &File) -> Vec<Tool> {
     let is_module = file.entry_points.iter().any(|(stage, _)| *stage == "module");
     match file.target {
-        "glsl" if !is_module => Some(("glslangValidator", vec!["--target-env", "opengl"])),
-        "glsl-es" if !is_module => Some(("glslangValidator", vec![])),
-        "glsl-vulkan" if !is_module => {
-            Some(("glslangValidator", vec!["-V", "--target-env", "vulkan1.1", "-o", "out.spv"]))
-        }
-        "spirv" => Some(("spirv-val", vec!["--target-env", "vulkan1.1"])),
-        _ => None,
+        "glsl" if !is_module => vec![GLSL, GLSL_TO_SPIRV],
+        "glsl-es" if !is_module => vec![GLSL],
+        "glsl-vulkan" if !is_module => vec![VULKAN],
+        "spirv" => vec![SPIRV],
+        _ => Vec::new(),
     }
 }
 
@@ -56,34 +81,59 @@ fn suffix(file: &File) -> &str {
     file.path.split_once('.').map_or("", |(_, suffix)| suffix)
 }
 
-fn accepted(file: &File) -> Result<(), String> {
-    let Some((program, arguments)) = tool(file) else { return Ok(()) };
-    let mut hasher = DefaultHasher::new();
-    (program, version(program), &arguments, suffix(file), &file.bytes).hash(&mut hasher);
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("validated");
-    let passed = folder.join(format!("{:016x}", hasher.finish()));
-    if passed.exists() {
-        return Ok(());
+/// Returns what is not known to be valid, as the files of each process.
+fn batches<'a>(files: &[&'a File], tools: &dyn Fn(&File) -> Vec<Tool>) -> Vec<(Tool, Vec<&'a File>)> {
+    let mut batches = Vec::new();
+    for tool in [GLSL, GLSL_TO_SPIRV, VULKAN, SPIRV] {
+        let unknown = files.iter().copied().filter(|file| tools(file).contains(&tool) && !passed(tool, file).exists());
+        let unknown: Vec<&File> = unknown.collect();
+        batches.extend(unknown.chunks(tool.files).map(|files| (tool, files.to_vec())));
     }
-    // Two tests may validate the same file at once, so each uses its own folder.
-    static COUNT: AtomicUsize = AtomicUsize::new(0);
-    let work: PathBuf = folder.join(format!("work-{:016x}-{}", hasher.finish(), COUNT.fetch_add(1, Ordering::Relaxed)));
-    std::fs::create_dir_all(&work).unwrap();
-    let name = format!("file.{}", suffix(file));
-    std::fs::write(work.join(&name), &file.bytes).unwrap();
-    let result = run(program, &arguments, &name, &work).and_then(|()| match file.target {
-        // The SPIR-V that glslang writes for the Vulkan dialect must be valid, too.
-        "glsl-vulkan" => run("spirv-val", &["--target-env", "vulkan1.1"], "out.spv", &work),
-        _ => Ok(()),
-    });
-    std::fs::remove_dir_all(&work).unwrap();
-    result.map_err(|diagnostic| format!("{}: {diagnostic}\n{}", file.path, String::from_utf8_lossy(&file.bytes)))?;
-    std::fs::write(passed, "").unwrap();
-    Ok(())
+    batches
 }
 
-fn run(program: &str, arguments: &[&str], name: &str, folder: &Path) -> Result<(), String> {
-    let output = Command::new(program).args(arguments).arg(name).current_dir(folder).output();
+/// Returns the file that exists if a validator accepted `file`.
+fn passed(tool: Tool, file: &File) -> PathBuf {
+    let mut hasher = DefaultHasher::new();
+    (tool, version(tool.program), suffix(file), &file.bytes).hash(&mut hasher);
+    folder().join(format!("{:016x}", hasher.finish()))
+}
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join("validated")
+}
+
+/// Runs a validator on files. Returns a message for each that it rejects.
+fn rejected(tool: Tool, files: &[&File]) -> Vec<String> {
+    // Two tests may validate the same file at once, so each uses its own folder.
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    let work = folder().join(format!("work-{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed)));
+    std::fs::create_dir_all(&work).unwrap();
+    let names: Vec<String> =
+        files.iter().enumerate().map(|(index, file)| format!("{index}.{}", suffix(file))).collect();
+    names.iter().zip(files).for_each(|(name, file)| std::fs::write(work.join(name), &file.bytes).unwrap());
+    let result = run(tool, &names, &work).and_then(|()| match tool == VULKAN {
+        // The SPIR-V that glslang writes for the Vulkan dialect must be valid, too.
+        true => run(SPIRV, &["out.spv".to_owned()], &work),
+        false => Ok(()),
+    });
+    std::fs::remove_dir_all(&work).unwrap();
+    match (result, files) {
+        (Ok(()), _) => {
+            files.iter().for_each(|file| std::fs::write(passed(tool, file), "").unwrap());
+            Vec::new()
+        }
+        (Err(diagnostic), [file]) => {
+            vec![format!("{}: {diagnostic}\n{}", file.path, String::from_utf8_lossy(&file.bytes))]
+        }
+        // Each by itself, so that the message has its text.
+        (Err(_), files) => files.iter().flat_map(|file| rejected(tool, &[file])).collect(),
+    }
+}
+
+fn run(tool: Tool, names: &[String], folder: &Path) -> Result<(), String> {
+    let Tool { program, arguments, .. } = tool;
+    let output = Command::new(program).args(arguments).args(names).current_dir(folder).output();
     let output = output.unwrap_or_else(|error| panic!("{program} must be installed: {error}"));
     if output.status.success() {
         return Ok(());

@@ -49,7 +49,7 @@ pub const COUNTERS: [(&str, CounterKind, &str); 14] = [
     (
         "not_converged",
         CounterKind::Loss,
-        "fragments that still changed a slot in the last iteration of a loop: entries may be lost or duplicated; or that had not been peeled",
+        "fragments left when a loop reached its limit: with peeling they are missing from the image; otherwise entries may be lost or duplicated",
     ),
     ("samples_exhausted", CounterKind::Loss, "fragments that arrived when every sample of their pixel was taken"),
     ("occluded", CounterKind::Event, "fragments that meet the constraints and that an opaque surface hides"),

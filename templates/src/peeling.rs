@@ -14,7 +14,7 @@ pub(crate) fn rows() -> Vec<Row> {
         Row {
             template: Some(template!("peeling/none")),
             provides: vec![Capability::LayersInOrder],
-            ..Row::new("peeling", "none", "no: what is not kept is handed to the overflow", "")
+            ..Row::new("peeling", "none", "no: the scene is drawn once, and what is not kept goes to the overflow", "")
         },
         k_layers(),
         layers::depth_layers(),

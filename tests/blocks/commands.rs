@@ -59,8 +59,7 @@ fn lines<'a>(block: &'a Block) -> Vec<Line<'a>> {
         let words: Vec<&str> = command.split_whitespace().collect();
         match words.as_slice() {
             ["fragbuf", subcommand, ..] if is_synopsis(&command) => has_options(block, subcommand, &command),
-            // It runs until it is ended: `playground_requests` starts it.
-            ["fragbuf", "playground", ..] => {}
+            ["fragbuf", "playground", arguments @ ..] => is_of_the_playground(block, arguments),
             ["fragbuf", arguments @ ..] => lines.push(line(block, arguments)),
             ["cargo", "run", "--release", "--", arguments @ ..] => lines.push(line(block, arguments)),
             // The example runs in a test that includes it.
@@ -111,6 +110,15 @@ fn is_of_the_opengl_host(block: &Block, arguments: &[&str]) {
     }
 }
 
+/// Checks that the program has the options, and that the folder exists. The command runs until it is ended: `playground_requests`
+/// starts it.
+fn is_of_the_playground(block: &Block, arguments: &[&str]) {
+    has_options(block, "playground", &arguments.join(" "));
+    if let Some(folder) = arguments.first().filter(|argument| !argument.starts_with("--")) {
+        assert!(root().join(folder).is_dir(), "{}:{}: there is no folder `{folder}`", block.file, block.line);
+    }
+}
+
 /// Returns the commands of a text without comments. An indented line continues a command.
 fn commands(text: &str) -> Vec<String> {
     let mut commands: Vec<String> = Vec::new();
@@ -128,7 +136,7 @@ fn is_synopsis(command: &str) -> bool {
     command.contains(['[', '<', '…'])
 }
 
-/// Every option of a synopsis is one that the command has.
+/// Every option of a synopsis, or of a command that does not run here, is one that the subcommand has.
 fn has_options(block: &Block, subcommand: &str, synopsis: &str) {
     let (help, _) = fragbuf(&[subcommand.to_owned(), "--help".to_owned()], root());
     for option in synopsis.split(|c: char| !c.is_ascii_alphanumeric() && c != '-').filter(|word| word.starts_with("--"))

@@ -2,12 +2,13 @@
 
 use fragbuf_follow::Object;
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Capability, Compare, KeepDefault, Objects, Pass, Row, Step, Technique, Template};
+use fragbuf_templates::vocabulary::{Compare, Objects, Pass, Step};
 
-use crate::numbers::Numbers;
-use crate::peeling_loop::{BLEND, PEEL, depth, peeling_loop, peeling_resources};
-use crate::scene::{Quad, image, over_background, quads};
-use crate::technique::BACKGROUND;
+use super::numbers::Numbers;
+use super::peeling_loop::{BLEND, PEEL, depth, peeling_loop, peeling_resources};
+use super::scene::{Quad, image, over_background, quads};
+use super::technique::BACKGROUND;
+use super::tested_storage;
 
 pub const SIZE: [u32; 2] = [13, 7];
 
@@ -18,23 +19,8 @@ fn boxes() {}
 
 /// Returns the registry with front-to-back peeling as a storage, and the technique `tested`.
 pub fn registry(objects: Objects, before: Option<Pass>) -> Registry {
-    let choices = vec![("storage", "tested"), ("sync", "as_it_comes")];
-    let keep = KeepDefault::All;
-    let technique = Technique { key: "tested".to_owned(), title: "", paper: "", summary: "", keep, choices };
-    let storage = Row {
-        resources: peeling_resources(),
-        steps: vec![Step::Repeat(peeling_loop("peel", "64", objects, before, "output"))],
-        provides: vec![Capability::KeepsAll, Capability::FixedFunction, Capability::Sorted],
-        ..Row::new("storage", "tested", "", "")
-    };
-    let skeleton = |(key, source): (&str, &str)| Row {
-        template: Some(Template::new(format!("pass/{key}.wgsl"), source.to_owned())),
-        calls: vec!["addressing"],
-        ..Row::new("pass", key, "", "")
-    };
-    let registry = Registry::builtin().with(storage).with(Row::new("sync", "as_it_comes", "", ""));
-    let skeletons = [("peel", PEEL), ("blend", BLEND), ("boxes", BOXES)];
-    skeletons.map(skeleton).into_iter().fold(registry.with_technique(technique), Registry::with)
+    let steps = vec![Step::Repeat(peeling_loop("peel", "64", objects, before, "output"))];
+    tested_storage::registry(peeling_resources(), steps, &[("peel", PEEL), ("blend", BLEND), ("boxes", BOXES)])
 }
 
 /// Returns a quad as an object. Its box is flat.

@@ -9,8 +9,8 @@ use fragbuf_model::{Draft, SourceSpan, Variant, check};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{KeepDefault, Technique, TieBreak};
 
-use crate::cpu_image::{cpu_image, is_exact, shown};
-use crate::scene::{Quad, image, image_in_order};
+use super::cpu_image::{cpu_image, is_exact, shown};
+use super::scene::{Quad, image, image_in_order};
 
 pub const BACKGROUND: [f64; 3] = [0.2, 0.4, 0.6];
 

@@ -14,7 +14,7 @@ mod unused;
 mod warnings;
 
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::KeepDefault;
+use fragbuf_templates::vocabulary::{DescriptionValues, KeepDefault};
 
 pub(crate) use self::payload::description_values;
 use crate::variant::Description;
@@ -38,6 +38,8 @@ pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics>
     // With a missing storage, an unknown choice or a part with errors, every capability would be reported as missing.
     if diagnostics.is_empty() && !draft.incomplete.hides_capabilities() {
         let given = description_values(&attributes, criterion, draft.resolve.as_ref(), keep);
+        // What a closure with errors would need is unknown.
+        let given = DescriptionValues { is_resumable: given.is_resumable || draft.incomplete.resolve, ..given };
         capabilities::check(draft, &choices, given, registry, &mut diagnostics);
     }
     let diagnostics = command_line::fixes(draft, registry, diagnostics);

@@ -3,7 +3,8 @@
 //! Each front end of the language (file, macro, builder) makes a [`Draft`]; equal descriptions make equal drafts. User
 //! closures are already type-checked and lowered to WGSL, because all front ends share one type checker.
 
-use crate::{Diagnostics, Resumable, SourceSpan, Spanned};
+use crate::resumable::{Resumable, Uninterruptible};
+use crate::{Diagnostics, SourceSpan, Spanned};
 
 /// The description of one fragment buffer, unchecked.
 #[derive(Clone, Debug, PartialEq)]
@@ -374,8 +375,8 @@ pub struct UserFunction {
     pub lines: Vec<SourceSpan>,
     /// The attributes and uniforms that it reads.
     pub reads: Reads,
-    /// Of an effect: its parts, if it can be interrupted between two fragments; else what to change, beginning with a verb.
-    pub resumable: Option<Result<Box<Resumable>, &'static str>>,
+    /// Of an effect: its parts, if it can be interrupted between two fragments.
+    pub resumable: Option<Result<Box<Resumable>, Uninterruptible>>,
 }
 
 impl PartialEq for UserFunction {

@@ -1,6 +1,6 @@
 //! An effect that can be interrupted between two fragments of a pixel and continued later, as peeling requires.
 
-use crate::UserFunction;
+use crate::{SourceSpan, UserFunction};
 
 /// The parts of an effect `{ let mut a = …; for f in fragments { … } value }`, lowered to WGSL. They share the variable [`RESUMED`].
 #[derive(Clone, Debug)]
@@ -14,6 +14,17 @@ pub struct Resumable {
     pub advance: UserFunction,
     /// What is after the loop: returns the premultiplied colour, a `vec4<f32>`.
     pub end: UserFunction,
+}
+
+/// Why an effect needs all fragments of a pixel at once.
+#[derive(Clone, Debug)]
+pub struct Uninterruptible {
+    /// What needs them.
+    pub span: SourceSpan,
+    /// The reason, a clause about the closure and the fragments, "them".
+    pub reason: &'static str,
+    /// What to change, beginning with a verb.
+    pub help: &'static str,
 }
 
 /// The WGSL variable with what is kept, a struct.

@@ -12,7 +12,6 @@ use crate::lower;
 use crate::raw_function::{RawFunction, Role};
 use crate::reads;
 use crate::report::Report;
-use crate::resumable::Obstacle;
 use crate::suspicious;
 use crate::tree::Function;
 use crate::types::Type;
@@ -78,7 +77,7 @@ fn unused(
 /// Adds the parts of an effect, or what prevents them.
 fn with_parts(user: UserFunction, function: &Function, environment: &Environment) -> UserFunction {
     let parts = lower::resumable(function, &environment.helpers);
-    let resumable = parts.map_err(Obstacle::help).map(|parts| {
+    let resumable = parts.map(|parts| {
         let [begin, advance, end] = [parts.begin, parts.advance, parts.end];
         let part = |name: &str, source: lower::WgslFunction| UserFunction {
             name: name.to_owned(),

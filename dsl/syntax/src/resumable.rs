@@ -7,6 +7,7 @@
 use std::collections::BTreeSet;
 
 use fragbuf_model::SourceSpan;
+use fragbuf_model::resumable::Uninterruptible;
 
 use crate::tree::{Block, Expr, For, Function, Kind, Sequence, Statement, VariableId};
 use crate::types::Type;
@@ -29,77 +30,104 @@ pub(crate) struct Parts<'a> {
 /// Why a closure cannot be interrupted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Obstacle {
-    /// It has no loop over the fragments outside of other blocks, or several.
-    Loops,
+    /// It has no loop over the fragments.
+    NoLoop,
+    /// Its loop over the fragments is inside of another block.
+    Nested,
+    /// It has a second loop over the fragments.
+    Second,
     /// Its loop begins at the farthest fragment.
     Reversed,
-    /// It reads a fragment by its index, or the number of fragments.
+    /// It reads a fragment by its index.
     Indexed,
-    /// A variable that is kept has no words, such as a fragment.
-    Variable,
+    /// It reads the number of fragments.
+    Counted,
+    /// A variable that is kept is a whole fragment.
+    Fragment,
     /// It returns before the loop.
     Return,
 }
 
 impl Obstacle {
-    /// Returns what to change, beginning with a verb.
-    pub(crate) fn help(self) -> &'static str {
+    /// Returns why the closure needs all fragments at once, and what to change.
+    fn words(self) -> (&'static str, &'static str) {
         match self {
-            Obstacle::Loops => {
-                "read the fragments in one loop, outside of other blocks: `let mut a = …; for f in fragments { … } value`"
-            }
-            Obstacle::Reversed => {
-                "begin the loop at the nearest fragment: remove `.rev()`, and weight each fragment by the light that passes those in front of it"
-            }
-            Obstacle::Indexed => {
-                "read the fragments in one loop, without `fragments[i]` and `fragments.len()`: keep what a later one needs in a variable"
-            }
-            Obstacle::Variable => "keep the attributes of a fragment in variables, and not the fragment",
-            Obstacle::Return => "move the `return` behind the beginning of the loop",
+            Obstacle::NoLoop => ("it has no loop over them", "read them in a loop: `for f in fragments { … }`"),
+            Obstacle::Nested => (
+                "its loop over them is inside of another block",
+                "move the loop to the level of the closure, and test the condition inside of it",
+            ),
+            Obstacle::Second => ("this is a second loop over them", "compute both in one loop"),
+            Obstacle::Reversed => (
+                "this loop begins at the farthest",
+                "begin at the nearest, without `.rev()`: weight each fragment by the light that passes those in front of it",
+            ),
+            Obstacle::Indexed => (
+                "it reads one by its index",
+                "remember what a later fragment needs in a variable of the loop, such as `last = f.depth`",
+            ),
+            Obstacle::Counted => ("it reads their number", "count in the loop: `count += 1`"),
+            Obstacle::Fragment => (
+                "this variable keeps a whole fragment",
+                "keep the attributes that are needed, each in a variable of its own",
+            ),
+            Obstacle::Return => ("it returns before its loop", "move the `return` into the loop or behind it"),
         }
+    }
+
+    fn at(self, span: &SourceSpan) -> Uninterruptible {
+        let (reason, help) = self.words();
+        Uninterruptible { span: span.clone(), reason, help }
     }
 }
 
 /// Returns the parts of a closure.
-pub(crate) fn parts(function: &Function) -> Result<Parts<'_>, Obstacle> {
-    let Block { statements, value, .. } = &function.body;
+pub(crate) fn parts(function: &Function) -> Result<Parts<'_>, Uninterruptible> {
+    let Block { statements, value, end } = &function.body;
     let is_loop = |statement: &Statement| matches!(statement, Statement::Expr(expr) if each_fragment(expr).is_some());
-    let at = statements.iter().position(is_loop).ok_or(Obstacle::Loops)?;
-    let (before, rest) = statements.split_at(at);
-    let Some((Statement::Expr(looped), after)) = rest.split_first() else { return Err(Obstacle::Loops) };
-    let each = each_fragment(looped).ok_or(Obstacle::Loops)?;
-    if matches!(each.sequence, Sequence::Fragments { reversed: true, .. }) {
-        return Err(Obstacle::Reversed);
-    }
+    let at = statements.iter().position(is_loop);
+    let (before, rest) = statements.split_at(at.unwrap_or(statements.len()));
+    let split = rest.split_first().and_then(|(first, after)| match first {
+        Statement::Expr(looped) => Some((each_fragment(looped)?, looped, after)),
+        Statement::Let { .. } => None,
+    });
     let mut obstacles = Vec::new();
-    let note = &mut |expr: &Expr| obstacles.extend(obstacle(&expr.kind));
-    before.iter().chain(after).for_each(|statement| in_statement(statement, note));
-    in_block(&each.body, note);
-    value.iter().for_each(|value| in_expr(value, note));
-    let mut returns = false;
-    before
-        .iter()
-        .for_each(|statement| in_statement(statement, &mut |expr| returns |= matches!(expr.kind, Kind::Return(_))));
-    obstacles.extend(returns.then_some(Obstacle::Return));
-    match obstacles.first() {
-        Some(obstacle) => Err(*obstacle),
-        None => {
-            let parts = Parts {
-                before,
-                each,
-                loop_span: &looped.span,
-                after,
-                value: value.as_deref(),
-                kept: Vec::new(),
-                constants: Vec::new(),
-            };
-            with_variables(parts, function)
-        }
+    let is_split = split.is_some();
+    let note = &mut |expr: &Expr| obstacles.extend(obstacle(expr, is_split).map(|obstacle| obstacle.at(&expr.span)));
+    before.iter().for_each(|statement| in_statement(statement, note));
+    if let Some((each, _, after)) = split {
+        in_block(&each.body, note);
+        after.iter().for_each(|statement| in_statement(statement, note));
     }
+    value.iter().for_each(|value| in_expr(value, note));
+    let return_before = &mut |expr: &Expr| {
+        let is_return = is_split && matches!(expr.kind, Kind::Return(_));
+        obstacles.extend(is_return.then(|| Obstacle::Return.at(&expr.span)));
+    };
+    before.iter().for_each(|statement| in_statement(statement, return_before));
+    let Some((each, looped, after)) = split else {
+        return Err(obstacles.into_iter().next().unwrap_or_else(|| Obstacle::NoLoop.at(end)));
+    };
+    if matches!(each.sequence, Sequence::Fragments { reversed: true, .. }) {
+        return Err(Obstacle::Reversed.at(&looped.span));
+    }
+    if let Some(obstacle) = obstacles.into_iter().next() {
+        return Err(obstacle);
+    }
+    let parts = Parts {
+        before,
+        each,
+        loop_span: &looped.span,
+        after,
+        value: value.as_deref(),
+        kept: Vec::new(),
+        constants: Vec::new(),
+    };
+    with_variables(parts, function)
 }
 
 /// Divides the variables that are declared before the loop.
-fn with_variables<'a>(parts: Parts<'a>, function: &Function) -> Result<Parts<'a>, Obstacle> {
+fn with_variables<'a>(parts: Parts<'a>, function: &Function) -> Result<Parts<'a>, Uninterruptible> {
     let mut later = BTreeSet::new();
     let mut note = |expr: &Expr| later.extend(variable(&expr.kind));
     in_block(&parts.each.body, &mut note);
@@ -107,7 +135,7 @@ fn with_variables<'a>(parts: Parts<'a>, function: &Function) -> Result<Parts<'a>
     parts.value.iter().for_each(|value| in_expr(value, &mut note));
     let (mut constants, mut constant_ids, mut kept) = (Vec::new(), BTreeSet::new(), Vec::new());
     for statement in parts.before {
-        let Statement::Let { variable: Some(id), value, .. } = statement else { continue };
+        let Statement::Let { variable: Some(id), value, span } = statement else { continue };
         let ty = function
             .variables
             .get(*id)
@@ -125,7 +153,7 @@ fn with_variables<'a>(parts: Parts<'a>, function: &Function) -> Result<Parts<'a>
             constants.push(statement);
         } else if later.contains(id) {
             if ty == Type::Fragment {
-                return Err(Obstacle::Variable);
+                return Err(Obstacle::Fragment.at(span));
             }
             kept.push(*id);
         }
@@ -179,10 +207,12 @@ fn each_fragment(expr: &Expr) -> Option<&For> {
     }
 }
 
-fn obstacle(kind: &Kind) -> Option<Obstacle> {
-    match kind {
-        Kind::Layer(_) | Kind::LayerCount => Some(Obstacle::Indexed),
-        Kind::For(each) if matches!(each.sequence, Sequence::Fragments { .. }) => Some(Obstacle::Loops),
+/// Returns why an expression needs all fragments; `has_loop`: the closure has a loop that can be interrupted.
+fn obstacle(expr: &Expr, has_loop: bool) -> Option<Obstacle> {
+    match &expr.kind {
+        Kind::Layer(_) => Some(Obstacle::Indexed),
+        Kind::LayerCount => Some(Obstacle::Counted),
+        _ if each_fragment(expr).is_some() => Some(if has_loop { Obstacle::Second } else { Obstacle::Nested }),
         _ => None,
     }
 }

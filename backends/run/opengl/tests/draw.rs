@@ -6,10 +6,10 @@ use fragbuf_opengl_host::{Api, Context, Error, Host, Scene};
 use fragbuf_targets::{Generation, Request, generate, manifest, target};
 use fragbuf_templates::Registry;
 
+use crate::hosts::numbers::Numbers;
+use crate::hosts::scene::{Quad, first_difference, quads, vertices};
+use crate::hosts::technique::{BACKGROUND, IDENTITY, is_parallel, objects, on_cpu, reference};
 use crate::material::material;
-use crate::numbers::Numbers;
-use crate::scene::{Quad, first_difference, quads, vertices};
-use crate::technique::{BACKGROUND, IDENTITY, is_parallel, objects, on_cpu, reference};
 
 /// The depth of the opaque surface of tests, which covers the frame. Fragments behind it are hidden.
 const OPAQUE: f32 = 0.5;

@@ -8,8 +8,8 @@ use fragbuf_templates::Registry;
 use serde_json::{Value, json};
 
 use crate::draw::{context, generated, host, read};
+use crate::hosts::technique::{IDENTITY, variant};
 use crate::material::material;
-use crate::technique::{IDENTITY, variant};
 
 const SIZE: [u32; 2] = [4, 4];
 

@@ -1,13 +1,12 @@
 //! The image is turned upside down on its way, and front faces stay front faces.
 
 use fragbuf_codegen::Form;
-use fragbuf_model::{Draft, SourceSpan, check};
 use fragbuf_opengl_host::{Api, Object, Scene};
-use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Blend, Capability, KeepDefault, Pass, Row, Step, Technique, Template};
+use fragbuf_templates::vocabulary::{Blend, Pass, Step};
 
 use crate::draw::{context, generated, host};
-use crate::technique::IDENTITY;
+use crate::hosts::technique::IDENTITY;
+use crate::hosts::tested_storage::{registry, tested};
 
 const FACING: &str = "
 @fragment
@@ -16,30 +15,13 @@ fn facing(inputs: FragmentInput, @builtin(front_facing) front: bool) -> @locatio
 }
 ";
 
-fn registry() -> Registry {
-    let skeleton = Row {
-        template: Some(Template::new("pass/facing.wgsl".to_owned(), FACING.to_owned())),
-        ..Row::new("pass", "facing", "", "")
-    };
-    let storage = Row {
-        steps: vec![Step::Pass(Pass::geometry("facing", "facing").target("output", Blend::Replace))],
-        provides: vec![Capability::KeepsAll, Capability::FixedFunction, Capability::Sorted],
-        ..Row::new("storage", "tested", "", "")
-    };
-    let choices = vec![("storage", "tested"), ("sync", "as_it_comes")];
-    let keep = KeepDefault::All;
-    let technique = Technique { key: "tested".to_owned(), title: "", paper: "", summary: "", keep, choices };
-    let registry = Registry::builtin().with(storage).with(Row::new("sync", "as_it_comes", "", ""));
-    registry.with_technique(technique).with(skeleton)
-}
-
 /// A triangle that is counterclockwise as it is seen is a front face (WebGPU, `frontFace`), its upper rows are the first of the
 /// image, and the position of a fragment counts from them.
 #[test]
 fn front_faces_and_rows_are_those_of_webgpu() {
-    let registry = registry();
-    let draft = Draft::from_technique("tested", &SourceSpan::new("tested", 1, 1));
-    let variant = check(&draft, &registry).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
+    let steps = vec![Step::Pass(Pass::geometry("facing", "facing").target("output", Blend::Replace))];
+    let registry = registry(Vec::new(), steps, &[("facing", FACING)]);
+    let variant = tested(&registry);
     // The upper half of the frame, counterclockwise, and the lower half, clockwise.
     let half = |[left, first, right, last]: [f32; 4], depth: f32| {
         [[left, first], [left, last], [right, last], [left, first], [right, last], [right, first]]

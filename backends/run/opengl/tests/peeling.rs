@@ -1,20 +1,19 @@
 //! What no built-in technique uses: exchanged resources, a loop that ends when no sample passes, and objects whose boxes are tested.
 
 use fragbuf_codegen::Form;
-use fragbuf_model::{Draft, SourceSpan, check};
 use fragbuf_opengl_host::{Api, Object, Scene};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::Objects;
 
 use crate::draw::{context, generated, host, inputs};
-use crate::peeled_scene::{SIZE, assert_peeled, layers, object, registry, registry_with_boxes};
-use crate::scene::vertices;
-use crate::technique::IDENTITY;
+use crate::hosts::peeled_scene::{SIZE, assert_peeled, layers, object, registry, registry_with_boxes};
+use crate::hosts::scene::vertices;
+use crate::hosts::technique::IDENTITY;
+use crate::hosts::tested_storage::tested;
 
 /// Peels the layers twice: the second frame begins like the first.
 fn peel(registry: &Registry) {
-    let draft = Draft::from_technique("tested", &SourceSpan::new("tested", 1, 1));
-    let variant = check(&draft, registry).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
+    let variant = tested(registry);
     let quads = layers();
     for api in [Api::OpenGl, Api::OpenGlEs] {
         let context = context(api);

@@ -9,9 +9,10 @@ use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Feature, KeepDefault};
 
 use crate::draw::{NotDrawn, compare, context, expected, generated, host, render};
-use crate::numbers::Numbers;
-use crate::scene::{first_difference, quads};
-use crate::technique::{is_parallel, k_of, variant};
+use crate::hosts::numbers::Numbers;
+use crate::hosts::rows::{NO_TECHNIQUE, draw_rows};
+use crate::hosts::scene::{first_difference, quads};
+use crate::hosts::technique::{is_parallel, k_of, variant};
 
 /// Odd and even sizes, a single pixel, and a single row and column.
 const SIZES: [[u32; 2]; 6] = [[13, 7], [16, 16], [1, 1], [31, 1], [1, 9], [37, 23]];
@@ -19,10 +20,11 @@ const SIZES: [[u32; 2]; 6] = [[13, 7], [16, 16], [1, 1], [31, 1], [1, 9], [37, 2
 /// Sizes for the other API and form. What depends on the size alone is the same text there.
 const FEW_SIZES: [[u32; 2]; 2] = [[13, 7], [1, 1]];
 
-/// Extensions that no software driver of OpenGL has, and the techniques that need them.
-const EXTENSIONS: [(&str, &[&str]); 2] = [
-    ("GL_ARB_fragment_shader_interlock", &["kb_ps", "depth_partition", "kb_stream"]),
-    ("GL_NV_shader_atomic_int64", &["kb_mdt64"]),
+/// Extensions that no software driver of OpenGL has, and the techniques that need them in each form.
+const EXTENSIONS: [(&str, Form, &[&str]); 3] = [
+    ("GL_ARB_fragment_shader_interlock", Form::Program, &["kb_ps", "depth_partition", "kb_stream"]),
+    ("GL_NV_shader_atomic_int64", Form::Program, &["kb_mdt64"]),
+    ("GL_NV_shader_atomic_int64", Form::Module, &["kb_mdt64"]),
 ];
 
 /// Features that OpenGL ES lacks, and the techniques that need them. The command line reports them as `unsupported-target`.
@@ -32,12 +34,17 @@ const LACKING_IN_ES: [(Feature, &[&str]); 3] =
 /// Techniques that have entry points of their own, in program form alone. The same code.
 const WITHOUT_MODULE: [&str; 5] = ["z_buffer", "kb_sr", "f2b", "f2b2", "f2b_3p"];
 
+/// Returns the extension that a technique needs and the driver lacks.
+fn missing_extension(context: &Context, form: Form, technique: &str) -> Option<&'static str> {
+    let mut needed = EXTENSIONS.iter().filter(|(_, of, techniques)| *of == form && techniques.contains(&technique));
+    needed.find(|(name, ..)| context.api == Api::OpenGl && !context.has(name)).map(|(name, ..)| *name)
+}
+
 /// Tests whether a technique may be left out because of an extension that the driver lacks, or a feature that the target lacks.
 fn is_explained(context: &Context, form: Form, technique: &str, why: &NotDrawn) -> bool {
     match why {
         NotDrawn::Failed(error) => {
-            let extension = EXTENSIONS.iter().find(|(_, techniques)| techniques.contains(&technique));
-            extension.is_some_and(|(name, _)| error.to_string().contains(name) && !context.has(name))
+            missing_extension(context, form, technique).is_some_and(|name| error.to_string().contains(name))
         }
         NotDrawn::Unsupported(missing) if missing.feature == Feature::OwnEntryPoints => {
             form == Form::Module && WITHOUT_MODULE.contains(&technique)
@@ -60,7 +67,11 @@ fn draw_all(api: Api, form: Form, sizes: &[[u32; 2]]) -> Vec<String> {
         let set = k.map(|k| k.to_string());
         let set: Vec<(&str, &str)> = set.iter().map(|k| ("k", k.as_str())).collect();
         let variant = variant(&technique.key, &set).unwrap();
-        let Err(why) = compare(&context, form, (&technique.key, &variant, k), sizes) else { continue };
+        let Err(why) = compare(&context, form, (&technique.key, &variant, k), sizes) else {
+            let missing = missing_extension(&context, form, &technique.key);
+            unexplained.extend(missing.map(|name| format!("{} is drawn without {name}", technique.key)));
+            continue;
+        };
         if !is_explained(&context, form, &technique.key, &why) {
             unexplained.push(format!("{}: {why}", technique.key));
         }
@@ -102,18 +113,21 @@ fn every_technique_with_a_material_in_es() {
     assert_eq!(rejected, sorted(&[&WITHOUT_MODULE, wide, samples, early]));
 }
 
-/// Rows that do not run as the only change of a technique, each with the reason: an extension, which a driver may have, or what a setting
-/// cannot give.
+/// Rows that are not drawn, each with the reason: an extension that the driver lacks, or no technique takes it.
 const ROWS_LEFT_OUT: [(&str, &str, &str); 5] = [
     ("storage", "wide_cascade", "GL_NV_shader_atomic_int64"),
     ("sync", "interlock", "GL_ARB_fragment_shader_interlock"),
     ("sync", "interlock_ordered", "GL_ARB_fragment_shader_interlock"),
     ("ties", "submission", "GL_ARB_fragment_shader_interlock"),
-    ("resolve", "closure", "a closure of a description"),
+    ("resolve", "closure", NO_TECHNIQUE),
 ];
 
 /// Rows that need a feature that OpenGL ES lacks.
-const ROWS_LEFT_OUT_IN_ES: [(&str, &str, Feature); 5] = [
+const ROWS_LEFT_OUT_IN_ES: [(&str, &str, Feature); 9] = [
+    ("sync", "interlock", Feature::Interlock),
+    ("sync", "interlock_ordered", Feature::Interlock),
+    ("ties", "submission", Feature::Interlock),
+    ("storage", "wide_cascade", Feature::U64Atomics),
     ("storage", "stencil_routed", Feature::SampleMask),
     ("cull", "occupancy_early", Feature::EarlyDepth),
     ("opaque", "early_depth", Feature::EarlyDepth),
@@ -121,61 +135,32 @@ const ROWS_LEFT_OUT_IN_ES: [(&str, &str, Feature); 5] = [
     ("samples", "coverage", Feature::Coverage),
 ];
 
-/// Returns the first technique that takes a row and another setting, and runs.
-fn taking_row(context: &Context, row: (&str, &str), others: &[Option<(&str, &str)>]) -> Option<String> {
-    let registry = Registry::builtin();
-    let pairs = registry.techniques().iter().flat_map(|technique| others.iter().map(move |other| (technique, other)));
-    pairs.into_iter().find_map(|(technique, other)| {
-        let k = if *other == Some(("k", "1")) { Some(1) } else { k_of(technique) };
-        let number = k.map(|k| k.to_string());
-        let set: Vec<(&str, &str)> =
-            std::iter::once(row).chain(*other).chain(number.iter().map(|k| ("k", k.as_str()))).collect();
-        let variant = variant(&technique.key, &set)?;
-        let what = format!("{} with {set:?}", technique.key);
-        compare(context, Form::Program, (&what, &variant, k), &[[13, 7]]).is_ok().then_some(what)
-    })
-}
-
-/// Draws one technique per row: the first that takes the row as its only change, or as one of two.
-fn draw_rows(api: Api) {
-    let (context, registry) = (context(api), Registry::builtin());
-    let axes = || registry.axes().iter().filter(|axis| axis.chosen);
-    let rows = || axes().flat_map(|axis| registry.rows_of(axis.key).map(|row| (axis.key, row.key.as_str())));
-    let others: Vec<Option<(&str, &str)>> = rows().chain([("k", "1")]).map(Some).collect();
-    let mut wrong = Vec::new();
-    for row in rows() {
-        let alone = taking_row(&context, row, &[None]);
-        let left_out = ROWS_LEFT_OUT.iter().any(|(axis, key, reason)| (*axis, *key) == row && !context.has(reason));
-        let lacking = ROWS_LEFT_OUT_IN_ES.iter().find(|(axis, key, _)| api == Api::OpenGlEs && (*axis, *key) == row);
-        if let Some((axis, key, feature)) = lacking {
-            let mut rows = registry.rows_of(axis);
-            assert!(rows.any(|row| row.key == *key && row.needs.contains(feature)), "{row:?} needs no {feature:?}");
+/// Draws one technique per row.
+fn draw_every_row(api: Api) {
+    let context = context(api);
+    let draw = |what: &str, variant: &Variant, k| {
+        compare(&context, Form::Program, (what, variant, k), &[[13, 7]]).map_err(|why| why.to_string())
+    };
+    let left_out = |axis: &str, key: &str| {
+        let mut in_es = ROWS_LEFT_OUT_IN_ES.iter().filter(|_| api == Api::OpenGlEs);
+        if let Some((.., feature)) = in_es.find(|(of, row, _)| (*of, *row) == (axis, key)) {
+            return Some(format!("requires {}", feature.meaning()));
         }
-        if left_out || lacking.is_some() {
-            wrong.extend(alone.map(|what| format!("{row:?} runs: {what}")));
-            continue;
-        }
-        let taken = alone.or_else(|| {
-            let others: Vec<_> =
-                others.iter().copied().filter(|other| other.is_none_or(|(axis, _)| axis != row.0)).collect();
-            taking_row(&context, row, &others)
-        });
-        match taken {
-            Some(what) => println!("{what}"),
-            None => wrong.push(format!("nothing runs {row:?}")),
-        }
-    }
+        let mut rows = ROWS_LEFT_OUT.iter().filter(|(.., reason)| !context.has(reason));
+        rows.find(|(of, row, _)| (*of, *row) == (axis, key)).map(|(.., reason)| (*reason).to_owned())
+    };
+    let wrong = draw_rows(&draw, &left_out);
     assert!(wrong.is_empty(), "{api}: {wrong:#?}");
 }
 
 #[test]
 fn every_row_of_every_axis() {
-    draw_rows(Api::OpenGl);
+    draw_every_row(Api::OpenGl);
 }
 
 #[test]
 fn every_row_of_every_axis_in_es() {
-    draw_rows(Api::OpenGlEs);
+    draw_every_row(Api::OpenGlEs);
 }
 
 /// Memory is that of the capacity; k is a symbol of the frame.
@@ -183,6 +168,7 @@ fn every_row_of_every_axis_in_es() {
 fn every_k_below_the_capacity() {
     let (context, size, form) = (context(Api::OpenGl), [13, 7], Form::Program);
     let plan_of = |variant: &Variant| generated(context.api, form, variant, &Registry::builtin());
+    let mut compared = 0;
     for technique in Registry::builtin().techniques() {
         let KeepDefault::Best(most) = technique.keep else { continue };
         let with_k = |k: u32| variant(&technique.key, &[("k", &k.to_string())]);
@@ -209,9 +195,12 @@ fn every_k_below_the_capacity() {
             }
             host.set_symbol("k", k.into()).unwrap_or_else(|e| panic!("{}: {e}", technique.key));
             let quads = quads(9, size, &mut Numbers::seeded(k.into()));
+            compared += 1;
             let seen = render(&mut host, form, &quads, size).unwrap_or_else(|e| panic!("{}: {e}", technique.key));
             let difference = first_difference(&seen, &expected(&plan, &host, &quads, Some(k), size));
             assert!(difference.is_none(), "{}, k = {k} of {capacity}: {}", technique.key, difference.unwrap());
         }
     }
+    println!("{compared} compared");
+    assert!(compared >= 20, "{compared}");
 }

@@ -8,19 +8,10 @@ use fragbuf_opengl_host::Api;
 use fragbuf_targets::{Request, generate, manifest, target};
 use fragbuf_templates::Registry;
 
-use crate::technique::variant;
+use crate::hosts::panes::assert_panes;
+use crate::hosts::technique::variant;
 
 const SIZE: [u32; 2] = [480, 360];
-
-/// Depth and straight colour of each pane, which reaches from -0.2 to 0.8 and from -0.45 to 0.45 before it is turned.
-const PANES: [(f64, [f64; 4]); 6] = [
-    (0.6, [0.9, 0.2, 0.2, 0.5]),
-    (0.3, [0.2, 0.8, 0.3, 0.5]),
-    (0.8, [0.2, 0.3, 0.9, 0.5]),
-    (0.1, [0.9, 0.8, 0.2, 0.3]),
-    (0.9, [0.6, 0.2, 0.8, 0.6]),
-    (0.5, [0.2, 0.8, 0.8, 0.4]),
-];
 
 fn examples() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../examples/opengl")
@@ -55,42 +46,8 @@ fn pixels(path: &Path) -> Vec<[u8; 3]> {
     bytes.chunks_exact(3).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
 }
 
-/// Returns the colour of a pixel, or `None` near an edge. With a material the glass has rings.
-fn expected(x: u32, y: u32, has_rings: bool) -> Option<[f64; 3]> {
-    let [u, v] =
-        [2.0 * (f64::from(x) + 0.5) / f64::from(SIZE[0]) - 1.0, 1.0 - 2.0 * (f64::from(y) + 0.5) / f64::from(SIZE[1])];
-    let mut layers: Vec<(f64, [f64; 4])> = Vec::new();
-    for (index, (depth, mut color)) in PANES.into_iter().enumerate() {
-        let (sin, cos) = (index as f64 * std::f64::consts::FRAC_PI_3).sin_cos();
-        let across = u * f64::from(SIZE[0]) / f64::from(SIZE[1]);
-        let [along, up] = [across * cos + v * sin, v * cos - across * sin];
-        let inside = (along + 0.2).min(0.8 - along).min(0.45 - up).min(up + 0.45);
-        if inside.abs() < 0.01 {
-            return None;
-        }
-        if inside > 0.0 {
-            color[3] *= if has_rings { 0.75 + 0.25 * (60.0 * u.hypot(v)).sin() } else { 1.0 };
-            layers.push((depth, color));
-        }
-    }
-    // From the farthest to the nearest, over white.
-    layers.sort_by(|one, other| other.0.total_cmp(&one.0));
-    Some(layers.iter().fold([1.0; 3], |behind, (_, color)| {
-        std::array::from_fn(|channel| color[3] * color[channel] + (1.0 - color[3]) * behind[channel])
-    }))
-}
-
 fn assert_expected(path: &Path, has_rings: bool) {
-    let mut compared = 0;
-    for (index, pixel) in (0..).zip(pixels(path)) {
-        let (x, y) = (index % SIZE[0], index / SIZE[0]);
-        let Some(expected) = expected(x, y, has_rings) else { continue };
-        compared += 1;
-        // Colours have 8 bits in memory and in the file.
-        let is_near = pixel.iter().zip(expected).all(|(seen, wanted)| (f64::from(*seen) - 255.0 * wanted).abs() < 2.5);
-        assert!(is_near, "{}: pixel {x}, {y} is {pixel:?}, not {expected:?}", path.display());
-    }
-    assert!(compared > 150_000, "{compared} pixels");
+    assert_panes(&path.display().to_string(), (SIZE, &pixels(path)), has_rings);
 }
 
 #[test]

@@ -1,17 +1,15 @@
 //! Targets of floats, and targets that are blended differently: OpenGL ES has them by extensions, which the manifest requires.
 
 use fragbuf_codegen::Form;
-use fragbuf_model::{Draft, SourceSpan, check};
 use fragbuf_opengl_host::{Api, Object, Scene};
 use fragbuf_targets::manifest;
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{
-    Blend, Capability, Element, KeepDefault, Pass, Resource, Row, Step, Technique, Template, TextureFormat,
-};
+use fragbuf_templates::vocabulary::{Access, Blend, Element, Pass, Resource, Step, TextureFormat};
 use serde_json::{Value, json};
 
 use crate::draw::{context, generated, host};
-use crate::technique::IDENTITY;
+use crate::hosts::technique::IDENTITY;
+use crate::hosts::tested_storage;
 
 const TWO: &str = "
 struct Two {
@@ -35,35 +33,20 @@ fn show(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
 
 /// Returns the registry with a pass that adds to a texture of 32-bit floats and replaces the texels of another.
 fn registry() -> Registry {
-    let skeleton = |(key, source): (&str, &str)| Row {
-        template: Some(Template::new(format!("pass/{key}.wgsl"), source.to_owned())),
-        calls: vec!["addressing"],
-        ..Row::new("pass", key, "", "")
-    };
     let texture = |name, format| Resource::new(name, Element::Texture(format), "").by("pixel", "pixels").cleared(0);
     let draw = Pass::geometry("two", "two").target("sum", Blend::Add).target("last", Blend::Replace);
-    let sampled = fragbuf_templates::vocabulary::Access::Sampled;
-    let show = Pass::fullscreen("show", "show").uses("sum", sampled).uses("last", sampled);
+    let show = Pass::fullscreen("show", "show").uses("sum", Access::Sampled).uses("last", Access::Sampled);
     let clear = |name: &str| Step::Clear { resource: name.to_owned(), value: 0 };
     let show = show.target("output", Blend::Replace);
-    let storage = Row {
-        resources: vec![texture("sum", TextureFormat::R32Float), texture("last", TextureFormat::Rgba8Unorm)],
-        steps: vec![clear("sum"), clear("last"), Step::Pass(draw), Step::Pass(show)],
-        provides: vec![Capability::KeepsAll, Capability::FixedFunction, Capability::Sorted],
-        ..Row::new("storage", "tested", "", "")
-    };
-    let choices = vec![("storage", "tested"), ("sync", "as_it_comes")];
-    let keep = KeepDefault::All;
-    let technique = Technique { key: "tested".to_owned(), title: "", paper: "", summary: "", keep, choices };
-    let registry = Registry::builtin().with(storage).with(Row::new("sync", "as_it_comes", "", ""));
-    [("two", TWO), ("show", SHOW)].map(skeleton).into_iter().fold(registry.with_technique(technique), Registry::with)
+    let resources = vec![texture("sum", TextureFormat::R32Float), texture("last", TextureFormat::Rgba8Unorm)];
+    let steps = vec![clear("sum"), clear("last"), Step::Pass(draw), Step::Pass(show)];
+    tested_storage::registry(resources, steps, &[("two", TWO), ("show", SHOW)])
 }
 
 #[test]
 fn targets_are_blended_each_in_its_way() {
     let registry = registry();
-    let draft = Draft::from_technique("tested", &SourceSpan::new("tested", 1, 1));
-    let variant = check(&draft, &registry).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
+    let variant = tested_storage::tested(&registry);
     // Two triangles over the whole frame, one behind the other.
     let triangle =
         |depth: f32| [[-1.0, 3.0], [-1.0, -1.0], [3.0, -1.0]].map(|[x, y]| [x, y, depth, 0.0, 0.0, 0.0, 0.0]);

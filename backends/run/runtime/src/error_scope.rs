@@ -37,7 +37,8 @@ pub(crate) fn is_lost(device: &wgpu::Device) -> bool {
     let probe = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("fragbuf probe"),
         size: 4,
-        usage: wgpu::BufferUsages::MAP_WRITE,
+        // Vulkan has no buffer that can only be mapped.
+        usage: wgpu::BufferUsages::MAP_WRITE | wgpu::BufferUsages::COPY_SRC,
         mapped_at_creation: true,
     });
     let lost = probe.get_mapped_range(..).is_err();

@@ -2,7 +2,7 @@
 
 /// Returns the words of `bytes`, without an incomplete word at the end.
 pub(crate) fn from_bytes(bytes: &[u8]) -> Vec<u32> {
-    bytes.chunks_exact(4).filter_map(|word| word.try_into().ok()).map(u32::from_le_bytes).collect()
+    bytes.as_chunks().0.iter().map(|word| u32::from_le_bytes(*word)).collect()
 }
 
 /// Returns the bytes of `words`.

@@ -6,7 +6,7 @@ use fragbuf_model::{Variant, check};
 use fragbuf_runtime::{PoolSize, Renderer, Settings, Sizing, Value};
 use fragbuf_targets::target;
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Capability, KeepDefault, Row};
+use fragbuf_templates::vocabulary::{Capability, Formula, KeepDefault, Row};
 
 use crate::capture::{check_as, compare, scattered};
 use crate::oracle::{self, PLAIN, Rules, Words, ordered_key, over};
@@ -130,7 +130,11 @@ fn any_criterion_over_any_storage_of_the_k_best() {
         // A slot of two words is too small for a criterion, and a depth test compares only depth.
         let conditions = || rows.iter().flat_map(|row| &row.conditions);
         let is_narrow = |symbol| conditions().any(|condition| condition.formula.mentions(symbol));
-        keeps && !is_narrow("entry_words") && !is_narrow("depth_key")
+        // Layers by another key than depth are not in the order in which the effect composites them.
+        let orders =
+            |(when, then): &(Formula, Capability)| *then == Capability::LayersInOrder && when.mentions("depth_key");
+        let is_by_depth = rows.iter().flat_map(|row| &row.implies).any(orders);
+        keeps && !is_narrow("entry_words") && !is_narrow("depth_key") && !is_by_depth
     };
     for row in registry.techniques().iter().filter(|row| row.keep != KeepDefault::All && keeps_best(&row.key)) {
         assert_eq!(tested.get(&row.key), Some(&criteria().len()), "{}", row.key);

@@ -1,7 +1,7 @@
-//! The common device of all tests, and functions to render a frame of quads and to read its results back.
+//! The devices of all tests, and functions to render a frame of quads and to read its results back.
 
 use std::collections::BTreeMap;
-use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError, TryLockError};
 
 use fragbuf_codegen::Form;
 use fragbuf_model::{Draft, SourceSpan, Variant, check};
@@ -15,10 +15,22 @@ use crate::oracle::Words;
 use crate::quads::{Quad, SIZE, vertices};
 use crate::samples;
 
-/// Returns the CPU's adapter: it is the same on every machine, and runs fragments in submission order.
+/// Returns a device on the CPU's adapter: it is the same on every machine, and runs fragments in submission order. There is a device per
+/// core, so that as many tests run at once; most of their time is not the driver's.
 pub fn device() -> MutexGuard<'static, Headless> {
-    static DEVICE: LazyLock<Mutex<Headless>> = LazyLock::new(|| open(&Choice::Cpu));
-    DEVICE.lock().unwrap_or_else(PoisonError::into_inner)
+    static DEVICES: LazyLock<Vec<LazyLock<Mutex<Headless>>>> = LazyLock::new(|| {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        std::iter::repeat_with(|| LazyLock::new((|| open(&Choice::Cpu)) as fn() -> _)).take(cores).collect()
+    });
+    for device in DEVICES.iter() {
+        match device.try_lock() {
+            Ok(device) => return device,
+            // A test that failed leaves its device usable.
+            Err(TryLockError::Poisoned(poisoned)) => return poisoned.into_inner(),
+            Err(TryLockError::WouldBlock) => {}
+        }
+    }
+    DEVICES[0].lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Returns the adapter that the environment variable `FRAGBUF_TEST_DEVICE` names, as `--device` does, or the CPU's: for tests of what

@@ -9,11 +9,11 @@ use fragbuf_model::Variant;
 use fragbuf_templates::Registry;
 use fragbuf_vulkan_host::Validation;
 
-use crate::numbers::Numbers;
+use crate::hosts::numbers::Numbers;
+use crate::hosts::scene::quads;
+use crate::hosts::technique::{k_of, variant};
 use crate::pixels::compare;
-use crate::scene::quads;
 use crate::stage::{Generated, context, draw, technique};
-use crate::technique::{k_of, variant};
 
 const MOCK: &str = "/usr/lib/chromium/libVkICD_mock_icd.so";
 

@@ -6,10 +6,10 @@ use fragbuf_templates::Registry;
 use fragbuf_vulkan_host::{Context, Error, Host, Object, Scene, Settings, Validation};
 use serde_json::{Value, json};
 
-use crate::numbers::Numbers;
-use crate::scene::quads;
+use crate::hosts::numbers::Numbers;
+use crate::hosts::scene::quads;
+use crate::hosts::technique::{IDENTITY, variant};
 use crate::stage::{Generated, context, draw};
-use crate::technique::{IDENTITY, variant};
 
 const SIZE: [u32; 2] = [4, 4];
 
@@ -140,7 +140,7 @@ fn a_pool_that_does_not_fit_is_an_error() {
     assert_eq!(draw(&mut host, &quads, SIZE).unwrap().lost, 0);
     // Fragments without a slot are counted.
     host.set_symbol("fragments", 1).unwrap();
-    let scene = crate::scene::vertices(&quads, SIZE, &["position", "color"]);
+    let scene = crate::hosts::scene::vertices(&quads, SIZE, &["position", "color"]);
     let objects = [Object { first: 0, count: 18, bounds: [[-1.0; 3], [1.0; 3]] }];
     let scene = Scene { vertices: &scene, objects: &objects, view_projection: IDENTITY };
     assert!(host.render(&scene, [0.0; 4]).unwrap().lost > 0);

@@ -1,22 +1,22 @@
 //! What no built-in technique uses: exchanged resources, a loop that ends when no sample passes, and objects whose
 //! boxes are tested. And what the description of a caller uses: a closure and uniforms.
 
-use fragbuf_model::{Draft, SourceSpan, check};
+use fragbuf_model::check;
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::Objects;
 use fragbuf_vulkan_host::{Object, Scene, Validation};
 
-use crate::numbers::Numbers;
-use crate::peeled_scene::{SIZE, assert_peeled, layers, object, registry, registry_with_boxes};
-use crate::scene::{Quad, quads, vertices};
+use crate::hosts::numbers::Numbers;
+use crate::hosts::peeled_scene::{SIZE, assert_peeled, layers, object, registry, registry_with_boxes};
+use crate::hosts::scene::{Quad, quads, vertices};
+use crate::hosts::technique::{BACKGROUND, IDENTITY};
+use crate::hosts::tested_storage::tested;
 use crate::stage::{Generated, context, draw, inputs};
-use crate::technique::{BACKGROUND, IDENTITY};
 
 /// Peels the layers in three frames, whole and in slices: each frame begins like the first.
 fn peel(registry: &Registry) {
     let context = context(Validation::On);
-    let draft = Draft::from_technique("tested", &SourceSpan::new("tested", 1, 1));
-    let variant = check(&draft, registry).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
+    let variant = tested(registry);
     let mut host = Generated::of(&variant, registry).host(&context, SIZE).unwrap_or_else(|error| panic!("{error}"));
     let (quads, inputs) = (layers(), inputs(&host));
     let vertices = vertices(&quads, SIZE, &inputs.iter().map(String::as_str).collect::<Vec<_>>());

@@ -5,11 +5,12 @@ use fragbuf_model::Variant;
 use fragbuf_templates::Registry;
 use fragbuf_vulkan_host::{Context, Error, Host, Validation};
 
-use crate::cpu_image::is_exact;
-use crate::numbers::Numbers;
-use crate::scene::{Quad, first_difference, quads};
+use crate::hosts::cpu_image::is_exact;
+use crate::hosts::numbers::Numbers;
+use crate::hosts::rows::{NO_TECHNIQUE, draw_rows};
+use crate::hosts::scene::{Quad, first_difference, quads};
+use crate::hosts::technique::{is_parallel, k_of, on_cpu, reference, variant};
 use crate::stage::{Generated, context, draw, inputs, technique};
-use crate::technique::{is_parallel, k_of, on_cpu, reference, variant};
 
 /// The width and height of each frame, and the rows of its slices: odd and even sizes, a single pixel, a single row
 /// and column.
@@ -73,80 +74,72 @@ pub fn compare(
     Ok(())
 }
 
-/// Extensions that no software driver has, and features that some lack.
-const LACKING: [&str; 2] = ["`VK_EXT_fragment_shader_interlock`", "`shaderBufferInt64Atomics`"];
+/// Extensions that no software driver has, and the techniques that need them.
+const EXTENSIONS: [(&str, &[&str]); 1] =
+    [("`VK_EXT_fragment_shader_interlock`", &["kb_ps", "depth_partition", "kb_stream"])];
 
-/// Every technique in every frame. Those that need what the device lacks say so.
-#[test]
-fn every_technique() {
-    let context = context(Validation::On);
+/// Features that some software drivers lack, and the techniques that need them.
+const FEATURES: [(&str, &[&str]); 1] = [("`shaderBufferInt64Atomics`", &["kb_mdt64"])];
+
+/// Tests whether a technique may be left out because of what the device lacks.
+fn is_explained(technique: &str, error: &Error) -> bool {
+    let mut lacking = EXTENSIONS.iter().chain(&FEATURES);
+    lacking.any(|(name, techniques)| techniques.contains(&technique) && error.to_string().contains(name))
+}
+
+/// Draws every technique in these frames. Those that need what the device lacks say so, and no others are left out.
+fn draw_all(context: &Context, frames: &[([u32; 2], Option<u32>)], orders: usize) {
     println!("driver: {}", context.name);
-    let mut left_out = Vec::new();
+    let (mut left_out, mut wrong) = (Vec::new(), Vec::new());
     for row in Registry::builtin().techniques() {
-        if let Err(error) = compare(&context, &row.key, (&technique(row), k_of(row)), &FRAMES, 3) {
-            assert!(LACKING.iter().any(|name| error.to_string().contains(name)), "{}: {error}", row.key);
-            left_out.push(format!("{}: {error}", row.key));
+        let drawn = compare(context, &row.key, (&technique(row), k_of(row)), frames, orders);
+        let needs_extension = EXTENSIONS.iter().any(|(_, techniques)| techniques.contains(&&*row.key));
+        match drawn {
+            Ok(()) if needs_extension && !is_parallel(&context.name) => {
+                wrong.push(format!("{} is drawn on a driver without its extension", row.key));
+            }
+            Ok(()) => {}
+            Err(error) if is_explained(&row.key, &error) => left_out.push(format!("{}: {error}", row.key)),
+            Err(error) => wrong.push(format!("{}: {error}", row.key)),
         }
     }
-    println!("left out: {left_out:?}");
-    // Three techniques need interlock, and one 64-bit atomic operations.
-    assert!(left_out.len() <= 4, "{left_out:?}");
+    println!("left out: {left_out:#?}");
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn every_technique() {
+    draw_all(&context(Validation::On), &FRAMES, 3);
 }
 
 /// The synchronisation checks of the layer report nothing: every technique, one frame each. They do not see every conflict.
 #[test]
 fn every_technique_with_synchronization_validation() {
-    let context = context(Validation::Synchronization);
-    let frames = [([13, 7], None)];
-    let run = |row| compare(&context, "synchronization", (&technique(row), k_of(row)), &frames, 1);
-    let left_out = Registry::builtin().techniques().iter().filter(|row| run(row).is_err()).count();
-    // Those of `every_technique`.
-    assert!(left_out <= 4, "{left_out}");
+    draw_all(&context(Validation::Synchronization), &[([13, 7], None)], 1);
 }
 
-/// Rows that do not run as the only change of a technique, with the reason.
+/// Rows that are not drawn, with the reason. Devices that are not software may have the extension.
 const ROWS_LEFT_OUT: [(&str, &str, &str); 4] = [
-    ("sync", "interlock", "VK_EXT_fragment_shader_interlock"),
-    ("sync", "interlock_ordered", "VK_EXT_fragment_shader_interlock"),
-    ("ties", "submission", "VK_EXT_fragment_shader_interlock"),
-    ("resolve", "closure", "a closure of a description"),
+    ("sync", "interlock", "`VK_EXT_fragment_shader_interlock`"),
+    ("sync", "interlock_ordered", "`VK_EXT_fragment_shader_interlock`"),
+    ("ties", "submission", "`VK_EXT_fragment_shader_interlock`"),
+    ("resolve", "closure", NO_TECHNIQUE),
 ];
 
-/// Returns the first technique that takes a row and another setting, and runs.
-fn taking_row(context: &Context, row: (&str, &str), others: &[Option<(&str, &str)>]) -> Option<String> {
-    let registry = Registry::builtin();
-    let pairs = registry.techniques().iter().flat_map(|technique| others.iter().map(move |other| (technique, other)));
-    pairs.into_iter().find_map(|(technique, other)| {
-        let k = if *other == Some(("k", "1")) { Some(1) } else { k_of(technique) };
-        let number = k.map(|k| k.to_string());
-        let set: Vec<(&str, &str)> =
-            std::iter::once(row).chain(*other).chain(number.iter().map(|k| ("k", k.as_str()))).collect();
-        let variant = variant(&technique.key, &set)?;
-        let what = format!("{} with {set:?}", technique.key);
-        compare(context, &what, (&variant, k), &[([13, 7], None)], 2).is_ok().then_some(what)
-    })
-}
-
-/// One technique per row: the first that takes the row as its only change, or as one of two.
 #[test]
 fn every_row_of_every_axis() {
-    let (context, registry) = (context(Validation::On), Registry::builtin());
-    let axes = || registry.axes().iter().filter(|axis| axis.chosen);
-    let rows = || axes().flat_map(|axis| registry.rows_of(axis.key).map(|row| (axis.key, row.key.as_str())));
-    let others: Vec<Option<(&str, &str)>> = rows().chain([("k", "1")]).map(Some).collect();
-    for row in rows() {
-        let alone = taking_row(&context, row, &[None]);
-        if let Some((_, _, reason)) = ROWS_LEFT_OUT.iter().find(|(axis, key, _)| (*axis, *key) == row) {
-            println!("{row:?}: needs {reason}");
-            continue;
-        }
-        let taken = alone.or_else(|| {
-            let others: Vec<_> =
-                others.iter().copied().filter(|other| other.is_none_or(|(axis, _)| axis != row.0)).collect();
-            taking_row(&context, row, &others)
-        });
-        println!("{}", taken.unwrap_or_else(|| panic!("nothing runs {row:?}")));
-    }
+    let context = context(Validation::On);
+    let draw = |what: &str, variant: &Variant, k| {
+        compare(&context, what, (variant, k), &[([13, 7], None)], 2).map_err(|error| error.to_string())
+    };
+    let left_out = |axis: &str, key: &str| {
+        let is_listed = |(of, row, reason): &&(&str, &str, &'static str)| {
+            (*of, *row) == (axis, key) && (*reason == NO_TECHNIQUE || !is_parallel(&context.name))
+        };
+        ROWS_LEFT_OUT.iter().find(is_listed).map(|(.., reason)| (*reason).to_owned())
+    };
+    let wrong = draw_rows(&draw, &left_out);
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
 /// Memory is that of the capacity; k is a symbol of the frame. The least k and one between stand for all of them.
@@ -162,7 +155,7 @@ fn k_below_the_capacity() {
             continue;
         }
         let mut host = match generated.host(&context, size) {
-            Err(error) if error.to_string().contains(" lacks ") => continue,
+            Err(error) if is_explained(&row.key, &error) => continue,
             host => host.unwrap_or_else(|error| panic!("{}: {error}", row.key)),
         };
         for k in [1, 3] {

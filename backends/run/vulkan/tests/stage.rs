@@ -7,8 +7,8 @@ use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::Technique;
 use fragbuf_vulkan_host::{Context, Error, Host, Image, Scene, Settings, Validation};
 
-use crate::scene::{Quad, vertices};
-use crate::technique::{BACKGROUND, IDENTITY, k_of, objects, variant};
+use crate::hosts::scene::{Quad, vertices};
+use crate::hosts::technique::{BACKGROUND, IDENTITY, k_of, objects, variant};
 
 /// Opens the device that the environment variable `FRAGBUF_TEST_DEVICE` names, or the driver that is always there,
 /// with the validation layer.

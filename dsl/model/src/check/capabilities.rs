@@ -186,6 +186,9 @@ impl Context<'_> {
 
     /// Reports a capability that `combination[index]` requires and no row provides.
     fn missing(&self, index: usize, capability: Capability, combination: &Combination<'_>) -> Diagnostic {
+        if let Some(diagnostic) = self.uninterruptible(index, capability, combination) {
+            return diagnostic;
+        }
         let chosen = &self.choices[index];
         // Rows that would provide it if the description met a condition, and other choices on axes with rows that provide it.
         let implied = combination.iter().flat_map(|row| row.implies.iter().map(move |implied| (row, implied)));
@@ -227,6 +230,28 @@ impl Context<'_> {
             diagnostic = diagnostic.label(&other.span, format!("{} does not provide it", name(row)));
         }
         diagnostic
+    }
+
+    /// Reports a closure that needs all fragments at once, where `combination[index]` passes them on in parts.
+    fn uninterruptible(
+        &self,
+        index: usize,
+        capability: Capability,
+        combination: &Combination<'_>,
+    ) -> Option<Diagnostic> {
+        let obstacle = self.draft.resolve.as_ref()?.resumable.as_ref()?.as_ref().err()?;
+        if capability != Capability::Resumes {
+            return None;
+        }
+        let row = name(combination[index]);
+        let message = format!(
+            "{row} passes the fragments of a pixel on in several parts, but the closure needs all of them at once: {}",
+            obstacle.reason
+        );
+        let help = format!("{}, or keep every fragment in an A-buffer, without peeling", obstacle.help);
+        let chosen = &self.choices[index].span;
+        let diagnostic = Diagnostic::new(codes::MISSING_CAPABILITY, &obstacle.span, message, help);
+        Some(diagnostic.label(chosen, format!("{row} is chosen here")))
     }
 
     /// Returns whether a span is of an item that the description gives, not of its preset or name.

@@ -38,9 +38,6 @@ impl Items<'_> {
         if mentions(&["color"]) {
             return self.color(is_legal);
         }
-        if mentions(&["resumable", "resumed_words"]) {
-            return self.effect();
-        }
         if mentions(&["payload_words", "entry_words", "value_words"]) {
             return self.words(is_legal);
         }
@@ -48,13 +45,6 @@ impl Items<'_> {
             return self.keep(is_legal);
         }
         self.criterion(is_legal).filter(|_| mentions(&["depth_key"]))
-    }
-
-    /// Returns the closure of the effect, with the change after which it can be interrupted.
-    fn effect(&self) -> Option<Cause> {
-        let function = self.draft.resolve.as_ref()?;
-        let help = function.resumable.as_ref()?.as_ref().err().map(|help| (*help).to_owned());
-        Some(Cause { span: function.span.clone(), help })
     }
 
     /// Returns the `keep` line, with the legal count that is nearest below.

@@ -4,12 +4,12 @@
 //! lowered as in the whole closure.
 
 use fragbuf_model::SourceSpan;
-use fragbuf_model::resumable::{COUNT, PROGRESS, Progress, RESULT, RESUMED};
+use fragbuf_model::resumable::{COUNT, PROGRESS, Progress, RESULT, RESUMED, Uninterruptible};
 
 use super::lines::WgslFunction;
 use super::lowering::{Destination, Lowering};
 use crate::environment::Signature;
-use crate::resumable::{Obstacle, Parts, parts};
+use crate::resumable::{Parts, parts};
 use crate::tree::{Expr, For, Function, Sequence, Statement, VariableId};
 
 /// The parts of an effect in WGSL.
@@ -25,7 +25,7 @@ pub(crate) struct ResumableSource {
 pub(crate) const NAMES: [&str; 3] = ["user_resolve_begin", "user_resolve_advance", "user_resolve_end"];
 
 /// Lowers a closure as parts.
-pub(crate) fn resumable(function: &Function, helpers: &[Signature]) -> Result<ResumableSource, Obstacle> {
+pub(crate) fn resumable(function: &Function, helpers: &[Signature]) -> Result<ResumableSource, Uninterruptible> {
     let parts = parts(function)?;
     let [begin_name, advance_name, end_name] = NAMES;
     let lowering = || {

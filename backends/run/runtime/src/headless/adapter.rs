@@ -46,7 +46,6 @@ impl fmt::Display for Choice {
 /// Returns every adapter of this machine that can write buffers from fragment shaders, best first. OpenGL adapters are listed only if
 /// there are no others, because they are the same devices with fewer features.
 pub fn adapters() -> Vec<wgpu::Adapter> {
-    let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env;
     let allowed = descriptor().backends;
     let mut adapters = Vec::new();
     for backends in [wgpu::Backends::PRIMARY, wgpu::Backends::SECONDARY].map(|some| some & allowed) {
@@ -59,6 +58,15 @@ pub fn adapters() -> Vec<wgpu::Adapter> {
     // The sort is stable: adapters of one kind keep the drivers' order.
     adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
     adapters
+}
+
+/// Returns wgpu's descriptor, in debug builds without the validation layer of the driver's API: it multiplies the time of a frame, and
+/// its messages go to the crate `log`, to which no program here listens. The environment variable `WGPU_VALIDATION=1` enables it. wgpu
+/// itself validates every call in any case.
+fn descriptor() -> wgpu::InstanceDescriptor {
+    let flags = wgpu::InstanceFlags::default() - wgpu::InstanceFlags::VALIDATION;
+    let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+    wgpu::InstanceDescriptor { flags: flags.with_env(), ..descriptor }
 }
 
 /// Returns the chosen adapter, for [`open_device`](super::open_device) or a device of the caller.
