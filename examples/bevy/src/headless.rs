@@ -7,8 +7,10 @@ use std::time::{Duration, Instant};
 
 use bevy::app::PluginsState;
 use bevy::prelude::*;
+use bevy::render::render_asset::RenderAssets;
 use bevy::render::renderer::{RenderDevice, RenderQueue};
 use bevy::render::settings::{InstanceFlags, WgpuSettings};
+use bevy::render::texture::GpuImage;
 use bevy::render::{RenderApp, RenderPlugin};
 use bevy::window::{ExitCondition, WindowPlugin};
 use fragbuf_follow::Error;
@@ -55,6 +57,22 @@ pub fn gpu(app: &App) -> Result<Gpu, Error> {
         return Err(Error("the app has no renderer: add `RenderPlugin`, and call `ready`".to_owned()));
     };
     Ok(Gpu { device: device.wgpu_device().clone(), queue: (**queue.0).clone() })
+}
+
+/// Adds an image that cameras can draw into and [`image_texels`] can read.
+pub fn target(app: &mut App, [width, height]: [u32; 2], format: wgpu::TextureFormat) -> Handle<Image> {
+    let mut image = Image::new_target_texture(width, height, format, None);
+    image.texture_descriptor.usage |= wgpu::TextureUsages::COPY_SRC;
+    app.world_mut().resource_mut::<Assets<Image>>().add(image)
+}
+
+/// Returns the bytes of an image after a frame, row by row.
+pub fn image_texels(app: &App, image: &Handle<Image>) -> Result<Vec<u8>, Error> {
+    let world = app.get_sub_app(RenderApp).map(SubApp::world);
+    let images = world.and_then(|world| world.get_resource::<RenderAssets<GpuImage>>());
+    let image = images.and_then(|images| images.get(image));
+    let image = image.ok_or_else(|| Error("the image has not been drawn: call `update` before".to_owned()))?;
+    texels(&gpu(app)?, &image.texture)
 }
 
 /// Waits for everything that has been submitted, and returns the bytes of a texture, row by row.

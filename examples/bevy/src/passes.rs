@@ -38,6 +38,8 @@ pub struct Passes {
 pub struct Attribute {
     /// Its name.
     pub name: String,
+    /// Its type in WGSL.
+    pub kind: String,
     /// The built-in value of WGSL that it has; `None`: the material computes it.
     pub built_in: Option<String>,
 }
@@ -65,13 +67,19 @@ impl Passes {
         }
         let rows = generation.plans.iter().flat_map(|planned| &planned.plan.selection.rows);
         let implicit = rows.flat_map(|selected| &selected.row.extra_words);
-        let given = variant.attributes.iter().map(|attribute| (attribute.name.value.clone(), None));
-        let implicit = implicit.map(|word| (word.name.to_string(), Some(word.built_in.to_string())));
+        let given = variant.attributes.iter().map(|attribute| {
+            let kind = attribute.format.value.wgsl_type().to_owned();
+            Attribute { name: attribute.name.value.clone(), kind, built_in: None }
+        });
+        let implicit = implicit.map(|word| {
+            let built_in = Some(word.built_in.to_string());
+            Attribute { name: word.name.to_string(), kind: "u32".to_owned(), built_in }
+        });
         let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
         Ok(Passes {
             name: variant.name.value.clone(),
             manifest: manifest(&generation, group).to_string(),
-            attributes: given.chain(implicit).map(|(name, built_in)| Attribute { name, built_in }).collect(),
+            attributes: given.chain(implicit).collect(),
             plan: generation.plans.first().map(|planned| planned.plan.clone()),
             files: generation.files.iter().map(|file| (file.path.clone(), text(&file.bytes))).collect(),
         })

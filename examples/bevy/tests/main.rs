@@ -3,6 +3,7 @@
 
 #[path = "../../../tests/oracle/cpu_image.rs"]
 mod cpu_image;
+mod meshes;
 #[path = "../../../tests/oracle/numbers.rs"]
 mod numbers;
 #[path = "../../../tests/oracle/reference.rs"]

@@ -23,14 +23,19 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const UNSUPPORTED: [(&str, &str); 2] = [("f2b_3p", "early depth test"), ("kb_mdt64", "64-bit atomic operations")];
 
 /// Returns the device of a Bevy app, and its name. Tests share the cores, so they use one device at a time.
-pub fn device() -> (Gpu, String, MutexGuard<'static, ()>) {
-    static ONE: Mutex<()> = Mutex::new(());
-    let guard = ONE.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+fn device() -> (Gpu, String, MutexGuard<'static, ()>) {
+    let guard = alone();
     let mut app = app();
     ready(&mut app).unwrap_or_else(|error| panic!("{error}"));
     let gpu = gpu(&app).unwrap_or_else(|error| panic!("{error}"));
     let name = gpu.device.adapter_info().name;
     (gpu, name, guard)
+}
+
+/// Waits until no other test uses a device.
+pub fn alone() -> MutexGuard<'static, ()> {
+    static ONE: Mutex<()> = Mutex::new(());
+    ONE.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
 /// Returns the texels of an external texture: a number per pixel.
@@ -82,7 +87,7 @@ fn draw(gpu: &Gpu, follower: &mut Follower, quads: &[Quad], size: [u32; 2]) -> R
 }
 
 /// Converts a texel of four 16-bit floats.
-fn pixel(bytes: &[u8]) -> [f32; 4] {
+pub fn pixel(bytes: &[u8]) -> [f32; 4] {
     std::array::from_fn(|channel| {
         let bits = u16::from_le_bytes([bytes[2 * channel], bytes[2 * channel + 1]]);
         let (exponent, mantissa) = (i32::from(bits >> 10 & 31), f32::from(bits & 1023) / 1024.0);

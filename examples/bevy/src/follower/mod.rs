@@ -5,6 +5,7 @@
 //! compares a device with the manifest, `names` translates its words, `memory` creates buffers and textures, `layouts` and `pipelines`
 //! create what passes need, and `frame` with `drawing` and `readback` carries out the steps. Nothing here knows a component of Bevy.
 
+mod counters;
 mod drawing;
 mod frame;
 mod layouts;
@@ -18,7 +19,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use bevy::tasks::block_on;
-use fragbuf_follow::manifest::{Counter, File, Manifest, Plan};
+use fragbuf_follow::manifest::{File, Manifest, Plan};
 use fragbuf_follow::{Error, Scene, Uniforms, Values, Walk};
 
 use crate::Passes;
@@ -26,8 +27,9 @@ use frame::Frame;
 use memory::Memory;
 use pipelines::{Pipelines, Source};
 
+pub use counters::{CounterNames, Counters};
 pub use drawing::{Geometry, GeometryDraw};
-pub use layouts::{Attachments, PassLayout};
+pub use layouts::{Attachments, PassLayout, sample_formula};
 pub use names::{depth_stencil, targets};
 pub use readback::{staging, wait};
 
@@ -53,6 +55,8 @@ pub struct Output<'a> {
 /// A plan on a device, with memory for one size of the frame.
 pub struct Follower {
     gpu: Gpu,
+    /// The name of the buffer.
+    name: String,
     plan: Arc<Plan>,
     files: Vec<File>,
     /// The values of symbols.
@@ -85,6 +89,7 @@ impl Follower {
             walk: Walk::new(plan.clone()),
             uniforms: Uniforms::new(&plan),
             gpu: gpu.clone(),
+            name: passes.name.clone(),
             files,
             values,
             size,
@@ -184,47 +189,30 @@ impl Follower {
 
     /// Waits for everything that has been submitted, and returns the counters of the last frame.
     pub fn counters(&self) -> Result<Counters, Error> {
-        let Some(staging) = self.counter_words() else { return Ok(Counters::default()) };
-        Ok(self.read_counters(&readback::wait(&self.gpu, &staging)?))
-    }
-
-    /// Submits a copy of the words of the counters. `None`: the plan counts nothing, or no frame has been drawn.
-    pub fn counter_words(&self) -> Option<wgpu::Buffer> {
-        let buffer = self.memory.buffer("counters").ok().filter(|_| !self.plan.counters.is_empty())?;
-        let device = &self.gpu.device;
-        let staging = staging(device, buffer.size());
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("counters") });
-        encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, buffer.size());
+        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("counters") };
+        let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
+        let Some(words) = self.copy_counters(&mut encoder) else { return Ok(Counters::default()) };
         self.gpu.queue.submit([encoder.finish()]);
-        Some(staging)
+        Ok(self.counter_names().counters(&readback::wait(&self.gpu, &words)?))
     }
 
-    /// Names the counters of these words.
-    pub fn read_counters(&self, bytes: &[u8]) -> Counters {
-        let value = |counter: &Counter| {
-            let word = bytes.chunks_exact(4).nth(counter.index).and_then(|word| word.try_into().ok());
-            u64::from(word.map_or(0, u32::from_le_bytes))
-        };
-        let counters = || self.plan.counters.iter();
-        Counters {
-            by_name: counters().map(|counter| (counter.name.clone(), value(counter))).collect(),
-            lost: counters().filter(|counter| counter.is_loss).map(value).sum(),
-        }
+    /// Records a copy of the words of the counters. `None`: the plan counts nothing, or no frame has been drawn.
+    pub fn copy_counters(&self, encoder: &mut wgpu::CommandEncoder) -> Option<wgpu::Buffer> {
+        let buffer = self.memory.buffer("counters").ok().filter(|_| !self.plan.counters.is_empty())?;
+        let words = staging(&self.gpu.device, buffer.size());
+        encoder.copy_buffer_to_buffer(buffer, 0, &words, 0, buffer.size());
+        Some(words)
+    }
+
+    /// The names of the words of the counters.
+    pub fn counter_names(&self) -> CounterNames {
+        CounterNames { buffer: self.name.clone(), plan: self.plan.clone() }
     }
 
     /// The bytes of the buffers and textures of the plan, without those of the engine.
     pub fn bytes(&self) -> u64 {
         self.memory.bytes(&self.plan)
     }
-}
-
-/// The counters of a frame.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Counters {
-    /// All counters.
-    pub by_name: BTreeMap<String, u64>,
-    /// The sum of the counters of lost fragments. If it is not 0, the image is or may be wrong.
-    pub lost: u64,
 }
 
 /// Runs what may raise a validation error or exhaust memory. Returns the error as one that names what was created.
