@@ -4,6 +4,7 @@
 //! world, without a name of a technique. `program` draws vertices with them, and `plugin` the transparent meshes of cameras. `headless`
 //! opens Bevy without a window.
 
+pub mod demo;
 pub mod follower;
 pub mod headless;
 mod passes;
@@ -12,6 +13,6 @@ mod program;
 
 pub use follower::{Counters, Follower, Gpu, Output};
 pub use fragbuf_follow::{Error, Object, Scene};
-pub use plugin::{FragmentBuffer, FragmentBufferPlugin, FragmentCounters};
 pub use passes::{Attribute, GROUP, PREFIX, Passes, TARGET};
+pub use plugin::{FragmentBuffer, FragmentBufferPlugin, FragmentCounters};
 pub use program::Vertices;

@@ -5,16 +5,18 @@
 use bevy::asset::RenderAssetUsages;
 use bevy::camera::{ClearColorConfig, Hdr, RenderTarget, ScalingMode};
 use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
+use bevy::diagnostic::{DiagnosticPath, DiagnosticsStore};
 use bevy::mesh::{Indices, PrimitiveTopology};
 use bevy::prelude::*;
-use fragbuf_bevy::headless::{app, image_texels, ready, target};
+use fragbuf_bevy::headless::{app, gpu, image_texels, ready, target};
 use fragbuf_bevy::{Error, FragmentBuffer, FragmentBufferPlugin, FragmentCounters, Passes};
+use fragbuf_codegen::Arrival;
 use fragbuf_templates::Registry;
 
 use crate::cpu_image::{is_exact, shown};
 use crate::numbers::Numbers;
 use crate::scene::{Quad, first_difference, image, quads};
-use crate::technique::{BACKGROUND, variant};
+use crate::technique::{BACKGROUND, is_parallel, on_cpu, variant};
 use crate::techniques::{alone, pixel};
 
 const SIZE: [u32; 2] = [29, 17];
@@ -90,6 +92,29 @@ impl Stage {
         bytes.chunks_exact(8).map(pixel).collect()
     }
 
+    pub fn remove_buffer(&mut self) {
+        self.app.world_mut().entity_mut(self.camera).remove::<FragmentBuffer>();
+    }
+
+    /// Turns all meshes around the axis of the view.
+    pub fn turn(&mut self, angle: f32) {
+        for mesh in &self.meshes {
+            if let Some(mut transform) = self.app.world_mut().get_mut::<Transform>(*mesh) {
+                transform.rotation = Quat::from_rotation_z(angle);
+            }
+        }
+    }
+
+    /// Returns the latest value of a diagnostic.
+    pub fn diagnostic(&self, path: &str) -> Option<f64> {
+        self.app.world().resource::<DiagnosticsStore>().get(&DiagnosticPath::new(path.to_owned()))?.value()
+    }
+
+    /// The name of the driver.
+    pub fn driver(&self) -> String {
+        gpu(&self.app).unwrap_or_else(|error| panic!("{error}")).device.adapter_info().name
+    }
+
     /// Returns the counters of a recent frame.
     pub fn counters(&mut self) -> FragmentCounters {
         for _ in 0..100 {
@@ -132,7 +157,8 @@ fn different_quads(numbers: &mut Numbers) -> Vec<Quad> {
 
 /// Returns the expected image: of the nearest `k`, in front of the opaque quad, over it and the background.
 fn expected(quads: &[Quad], opaque: Option<&Quad>, k: Option<u32>) -> Vec<[f64; 3]> {
-    let visible: Vec<Quad> = quads.iter().filter(|quad| opaque.is_none_or(|opaque| quad.depth < opaque.depth)).copied().collect();
+    let visible: Vec<Quad> =
+        quads.iter().filter(|quad| opaque.is_none_or(|opaque| quad.depth < opaque.depth)).copied().collect();
     let Some(opaque) = opaque else { return image(&visible, SIZE, k, BACKGROUND) };
     let over_opaque = image(&visible, SIZE, k, [0, 1, 2].map(|channel| f64::from(opaque.color[channel]) / 255.0));
     let over_background = image(quads, SIZE, k, BACKGROUND);
@@ -140,7 +166,9 @@ fn expected(quads: &[Quad], opaque: Option<&Quad>, k: Option<u32>) -> Vec<[f64; 
         let (x, y) = (pixel as u32 % SIZE[0], pixel as u32 / SIZE[0]);
         (opaque.x[0]..opaque.x[1]).contains(&x) && (opaque.y[0]..opaque.y[1]).contains(&y)
     };
-    (0..over_opaque.len()).map(|pixel| if is_covered(pixel) { over_opaque[pixel] } else { over_background[pixel] }).collect()
+    (0..over_opaque.len())
+        .map(|pixel| if is_covered(pixel) { over_opaque[pixel] } else { over_background[pixel] })
+        .collect()
 }
 
 /// An opaque surface in front of some quads.
@@ -149,9 +177,6 @@ const OPAQUE: Quad = Quad { x: [5, 20], y: [3, 12], depth: 0.4, color: [230, 20,
 /// Techniques whose geometry passes need entry points of their own, so that no material can call them, and those that portable WGSL does
 /// not have.
 const WITHOUT_MODULE: [&str; 6] = ["f2b", "f2b2", "f2b_3p", "kb_mdt64", "kb_sr", "z_buffer"];
-
-/// Techniques that state that they lose fragments. The reference does not have their images.
-const LOSING: [&str; 0] = [];
 
 /// Returns the description of a technique with what it takes of `keep` and `opaque`, and how many fragments a pixel keeps.
 fn described(key: &str) -> (String, Option<u32>, bool) {
@@ -170,24 +195,37 @@ fn described(key: &str) -> (String, Option<u32>, bool) {
     panic!("{key} is no technique");
 }
 
-/// Draws a technique in several drawing orders. Returns whether the reference has its image.
-fn compare(stage: &mut Stage, key: &str) -> Result<bool, Error> {
-    let (description, keep, hides) = described(key);
-    let passes = Passes::module(&description)?;
-    let Some(plan) = passes.plan().filter(|plan| is_exact(plan)) else { return Ok(false) };
+/// Draws a technique in several drawing orders. Where it states that it loses fragments, the expected image is that of the CPU device.
+fn compare(stage: &mut Stage, driver: &str, key: &str) -> Result<(), Error> {
+    let (mut description, keep, hides) = described(key);
+    let mut passes = Passes::module(&description)?;
+    let hides = hides && passes.plan().is_some_and(is_exact);
+    if !hides {
+        description = description.replace("opaque: in_shader;", "");
+        passes = Passes::module(&description)?;
+    }
+    let plan = passes.plan().unwrap_or_else(|| panic!("{key} has no plan"));
+    if is_parallel(driver) && plan.arrival() == Arrival::Race {
+        println!("{key}: not compared, because races change its image on {driver}");
+        return Ok(());
+    }
     stage.set_buffer(FragmentBuffer::new(&description)?);
     let mut numbers = Numbers::seeded(7);
     let mut quads = different_quads(&mut numbers);
     let opaque = hides.then_some(&OPAQUE);
     for order in 0..2 {
         stage.set_quads(&quads, opaque);
-        let expected = expected(&quads, opaque, shown(plan, keep));
+        let inputs = ["position", "color"].map(str::to_owned);
+        let expected = match is_exact(plan) {
+            true => expected(&quads, opaque, shown(plan, keep)),
+            false => on_cpu(plan, &inputs, &[], (&quads, SIZE)),
+        };
         let difference = first_difference(&stage.pixels(), &expected);
         assert!(difference.is_none(), "{description}, order {order}: {}: {quads:?}", difference.unwrap_or_default());
         numbers.shuffle(&mut quads);
     }
-    assert_eq!(stage.counters().counters.lost, 0, "{description}");
-    Ok(true)
+    assert!(!is_exact(plan) || stage.counters().counters.lost == 0, "{description}");
+    Ok(())
 }
 
 /// Every technique that has a module form, with 4 samples per pixel.
@@ -195,19 +233,104 @@ fn compare(stage: &mut Stage, key: &str) -> Result<bool, Error> {
 fn every_technique_with_meshes() {
     let _guard = alone();
     let mut stage = Stage::new(Msaa::Sample4);
-    let (mut rejected, mut losing) = (Vec::new(), Vec::new());
+    let driver = stage.driver();
+    let mut rejected = Vec::new();
     for technique in Registry::builtin().techniques() {
-        match compare(&mut stage, &technique.key) {
-            Ok(true) => println!("{}: drawn", technique.key),
-            Ok(false) => losing.push(technique.key.clone()),
-            Err(error) => {
-                assert!(error.to_string().contains("`wgsl` does not have these passes"), "{}: {error}", technique.key);
-                rejected.push(technique.key.clone());
-            }
+        if let Err(error) = compare(&mut stage, &driver, &technique.key) {
+            assert!(error.to_string().contains("`wgsl` does not have these passes"), "{}: {error}", technique.key);
+            rejected.push(technique.key.clone());
         }
     }
     rejected.sort();
-    losing.sort();
     assert_eq!(rejected, WITHOUT_MODULE);
-    assert_eq!(losing, LOSING);
+}
+
+/// Bevy alone does not draw the quads in the order of their depths, so the other tests would fail if meshes were not stored.
+#[test]
+fn without_a_buffer_the_order_shows() {
+    let _guard = alone();
+    let mut stage = Stage::new(Msaa::Sample4);
+    let quads = different_quads(&mut Numbers::seeded(7));
+    stage.set_quads(&quads, None);
+    let expected = expected(&quads, None, None);
+    assert!(first_difference(&stage.pixels(), &expected).is_some());
+    // The component may come and go.
+    stage.set_buffer(FragmentBuffer::new("buffer Glass from ab_ll { }").unwrap_or_else(|error| panic!("{error}")));
+    assert_eq!(first_difference(&stage.pixels(), &expected), None);
+    stage.remove_buffer();
+    assert!(first_difference(&stage.pixels(), &expected).is_some());
+}
+
+/// An edge covers a part of the samples of a pixel. One surface has no order, so Bevy's own image is what is expected.
+#[test]
+fn edges_are_smooth_where_fragments_store_coverage() {
+    let _guard = alone();
+    let mut stage = Stage::new(Msaa::Sample4);
+    let quad = Quad { x: [4, 20], y: [3, 12], depth: 0.3, color: [200, 40, 90, 150], id: 0 };
+    stage.set_quads(&[quad], None);
+    stage.turn(0.3);
+    let expected: Vec<[f64; 3]> = stage.pixels().iter().map(|[r, g, b, _]| [*r, *g, *b].map(f64::from)).collect();
+    stage.set_buffer(FragmentBuffer::new("buffer Glass from ab_ll { }").unwrap_or_else(|error| panic!("{error}")));
+    assert!(first_difference(&stage.pixels(), &expected).is_some(), "without coverage, edges have steps");
+    let smooth = "buffer Glass from ab_ll { samples: coverage; }";
+    stage.set_buffer(FragmentBuffer::new(smooth).unwrap_or_else(|error| panic!("{error}")));
+    assert_eq!(first_difference(&stage.pixels(), &expected), None);
+}
+
+/// Fragments that a pool has no slot for are counted, and the counters are diagnostics of Bevy.
+#[test]
+fn losses_are_diagnostics() {
+    let _guard = alone();
+    let mut stage = Stage::new(Msaa::Sample4);
+    let quads = different_quads(&mut Numbers::seeded(7));
+    stage.set_quads(&quads, None);
+    let buffer = |fragments| {
+        let buffer = FragmentBuffer::new("buffer Glass from ab_ll { }").unwrap_or_else(|error| panic!("{error}"));
+        buffer.with_fragments_per_pixel(fragments)
+    };
+    stage.set_buffer(buffer(0.5));
+    stage.pixels();
+    let covered: u64 = quads.iter().map(|quad| u64::from((quad.x[1] - quad.x[0]) * (quad.y[1] - quad.y[0]))).sum();
+    let slots = u64::from(SIZE[0] * SIZE[1]) / 2;
+    assert_eq!(stage.counters().counters.lost, covered - slots);
+    for counter in ["lost", "pool_exhausted"] {
+        assert_eq!(stage.diagnostic(&format!("fragbuf/Glass/{counter}")), Some((covered - slots) as f64));
+    }
+    stage.set_buffer(buffer(9.0));
+    stage.pixels();
+    assert_eq!(stage.counters().counters.lost, 0);
+}
+
+/// What the plugin does not have is logged, and the camera draws without its buffer.
+#[test]
+fn a_buffer_that_fails_leaves_the_meshes_to_bevy() {
+    let _guard = alone();
+    let mut stage = Stage::new(Msaa::Sample4);
+    stage.set_quads(&different_quads(&mut Numbers::seeded(7)), None);
+    let blended = stage.pixels();
+    for buffer in [
+        FragmentBuffer::new("buffer Glass from kplus_ab_sb { allocation: by_importance; }"),
+        FragmentBuffer::new("buffer Glass from ab_ll { }").map(|buffer| buffer.with_symbol("nonsense", 1)),
+        FragmentBuffer::new("buffer Glass from kplus_array { }").map(|buffer| buffer.with_symbol("k", 1 << 40)),
+    ] {
+        stage.set_buffer(buffer.unwrap_or_else(|error| panic!("{error}")));
+        assert_eq!(stage.pixels(), blended);
+    }
+}
+
+/// Mistakes of a description are errors before a camera has it.
+#[test]
+fn mistakes_of_a_description_are_errors() {
+    for (description, parts) in [
+        ("buffer Glass from nonsense { }", ["nonsense", "technique"]),
+        ("buffer Glass from z_buffer { }", ["`wgsl`", "entry points"]),
+        ("buffer Glass from ab_ll { fragment { color: rgba8, depth: f32, id: u32 } }", ["`id`", "`normal`"]),
+        (
+            "buffer Glass from ab_ll { fragment { color: rgba8, normal: vec2, depth: f32 } }",
+            ["`vec2<f32>`", "`vec3<f32>`"],
+        ),
+    ] {
+        let error = FragmentBuffer::new(description).err().map_or(String::new(), |error| error.to_string());
+        assert!(parts.iter().all(|part| error.contains(part)), "{description}: {error}");
+    }
 }

@@ -179,7 +179,8 @@ pub fn describe(
     })
 }
 
-fn texture_bytes(texture: &wgpu::Texture) -> u64 {
+/// Returns the bytes of a texture.
+pub fn texture_bytes(texture: &wgpu::Texture) -> u64 {
     // Depth with stencil has no size in WebGPU; drivers take four bytes or more.
     let texel = texture.format().block_copy_size(None).unwrap_or(4);
     u64::from(texture.width()) * u64::from(texture.height()) * u64::from(texture.sample_count()) * u64::from(texel)

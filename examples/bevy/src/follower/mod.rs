@@ -30,6 +30,7 @@ use pipelines::{Pipelines, Source};
 pub use counters::{CounterNames, Counters};
 pub use drawing::{Geometry, GeometryDraw};
 pub use layouts::{Attachments, PassLayout, sample_formula};
+pub use memory::texture_bytes;
 pub use names::{depth_stencil, targets};
 pub use readback::{staging, wait};
 
@@ -193,7 +194,7 @@ impl Follower {
         let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
         let Some(words) = self.copy_counters(&mut encoder) else { return Ok(Counters::default()) };
         self.gpu.queue.submit([encoder.finish()]);
-        Ok(self.counter_names().counters(&readback::wait(&self.gpu, &words)?))
+        Ok(self.counter_names().counters(&wait(&self.gpu, &words)?))
     }
 
     /// Records a copy of the words of the counters. `None`: the plan counts nothing, or no frame has been drawn.

@@ -27,7 +27,7 @@ pub struct FragmentBuffer {
 pub struct FragmentCounters {
     /// The counters. If `lost` is not 0, the image is or may be wrong.
     pub counters: Counters,
-    /// The bytes of all buffers and textures of the description, without the camera's.
+    /// The bytes of all buffers and textures of the description, the resolved image and the copied depth.
     pub bytes: u64,
 }
 

@@ -83,7 +83,7 @@ impl Camera<'_> {
         let colors = (target.get_color_attachment(), extracted.target_format, samples);
         screen.composite(device, &mut encoder, &followed.image, colors);
         if let Some(reports) = reports {
-            reports.record(&followed.follower, self.view.main_entity, &mut encoder);
+            reports.record(&followed.follower, followed.bytes(), self.view.main_entity, &mut encoder);
         }
         pending.push([commands, encoder.finish()]);
         Ok(())

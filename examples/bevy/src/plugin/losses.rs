@@ -55,12 +55,12 @@ pub fn channel() -> (Reports, Received) {
 
 impl Reports {
     /// Records a copy of the counters of a frame behind its passes.
-    pub fn record(&mut self, follower: &Follower, camera: MainEntity, encoder: &mut wgpu::CommandEncoder) {
+    pub fn record(&mut self, follower: &Follower, bytes: u64, camera: MainEntity, encoder: &mut wgpu::CommandEncoder) {
         if self.waiting.len() >= MOST_WAITING {
             return;
         }
         let Some(words) = follower.copy_counters(encoder) else { return };
-        let (names, bytes) = (follower.counter_names(), follower.bytes());
+        let names = follower.counter_names();
         self.waiting.push(Waiting { camera: camera.id(), names, bytes, words, is_mapped: None });
     }
 }

@@ -60,7 +60,8 @@ impl Screen {
         let pipeline = self.depth.entry(samples).or_insert_with(|| depth_pipeline(device, samples, opaque.format()));
         let view = opaque.create_view(&wgpu::TextureViewDescriptor::default());
         let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store };
-        let attachment = wgpu::RenderPassDepthStencilAttachment { view: &view, depth_ops: Some(ops), stencil_ops: None };
+        let attachment =
+            wgpu::RenderPassDepthStencilAttachment { view: &view, depth_ops: Some(ops), stencil_ops: None };
         let descriptor = wgpu::RenderPassDescriptor {
             label: Some("depth of opaque surfaces"),
             depth_stencil_attachment: Some(attachment),
@@ -98,7 +99,8 @@ fn fullscreen(
 ) {
     let entries = [wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(texture) }];
     let layout = pipeline.get_bind_group_layout(0);
-    let group = device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries });
+    let group =
+        device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries });
     render.set_pipeline(pipeline);
     render.set_bind_group(0, &group, &[]);
     render.draw(0..3, 0..1);

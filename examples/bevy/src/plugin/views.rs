@@ -19,6 +19,7 @@ use fragbuf_follow::manifest::Objects;
 use super::FragmentBuffer;
 use super::material::{IMAGE_FORMAT, StorePass, store_passes};
 use super::screen::Screen;
+use crate::follower::texture_bytes;
 use crate::{Follower, Gpu, Passes};
 
 /// The name of the external texture with the depth of opaque surfaces.
@@ -65,7 +66,8 @@ pub fn prepare(
     for (camera, view, buffer) in &cameras {
         let Some(size) = camera.physical_target_size.map(|size| size.to_array()) else { continue };
         let key = view.retained_view_entity;
-        let is_present = views.get(&key).is_some_and(|view| Arc::ptr_eq(&view.passes, &buffer.passes) && view.size == size);
+        let is_present =
+            views.get(&key).is_some_and(|view| Arc::ptr_eq(&view.passes, &buffer.passes) && view.size == size);
         if !is_present {
             let gpu = Gpu { device: device.wgpu_device().clone(), queue: (**queue.0).clone() };
             let followed = logged(FollowedView::new(&gpu, buffer, size, &assets), buffer);
@@ -104,7 +106,10 @@ impl FollowedView {
     fn new(gpu: &Gpu, buffer: &FragmentBuffer, size: [u32; 2], assets: &AssetServer) -> Result<Self, Error> {
         let limits = gpu.device.limits();
         if limits.max_bind_groups as usize <= super::material::MATERIAL_GROUP {
-            return Err(Error(format!("`maxBindGroups` is {}: Bevy's meshes and the buffer need 5", limits.max_bind_groups)));
+            return Err(Error(format!(
+                "`maxBindGroups` is {}: Bevy's meshes and the buffer need 5",
+                limits.max_bind_groups
+            )));
         }
         let mut follower = Follower::new(gpu, &buffer.passes, size, IMAGE_FORMAT)?;
         if let Some((_, pass)) = follower.plan().passes().find(|(_, pass)| !matches!(pass.objects, Objects::All)) {
@@ -136,14 +141,23 @@ impl FollowedView {
     /// Sets what may change from frame to frame.
     fn set(&mut self, buffer: &FragmentBuffer, [width, height]: [u32; 2]) -> Result<(), Error> {
         let fragments = (f64::from(width) * f64::from(height) * f64::from(buffer.fragments_per_pixel)).max(1.0) as u64;
-        let pools = self.follower.plan().symbols.iter().filter(|symbol| symbol.when == "readback" && symbol.value.is_none());
-        let pools: Vec<(String, u64)> =
-            pools.filter(|symbol| symbol.default.is_none()).map(|symbol| (symbol.name.clone(), fragments.clamp(symbol.least, symbol.most))).collect();
+        let pools =
+            self.follower.plan().symbols.iter().filter(|symbol| symbol.when == "readback" && symbol.value.is_none());
+        let pools: Vec<(String, u64)> = pools
+            .filter(|symbol| symbol.default.is_none())
+            .map(|symbol| (symbol.name.clone(), fragments.clamp(symbol.least, symbol.most)))
+            .collect();
         for (name, value) in &pools {
             self.follower.set_symbol(name, *value)?;
         }
         buffer.symbols.iter().try_for_each(|(name, value)| self.follower.set_symbol(name, *value))?;
         buffer.uniforms.iter().try_for_each(|(name, bytes)| self.follower.set_uniform(name, bytes))
+    }
+
+    /// The bytes of the buffers and textures of the plan, of the resolved image and of the copied depth.
+    pub fn bytes(&self) -> u64 {
+        let textures = [Some(&self.image), self.opaque.as_ref()];
+        self.follower.bytes() + textures.into_iter().flatten().map(texture_bytes).sum::<u64>()
     }
 
     /// Creates the pipelines that store what a pipeline of Bevy would blend.
