@@ -93,7 +93,9 @@ fn lines<'a>(block: &'a Block) -> Vec<Line<'a>> {
             }
             // `pictures` of the crate draws the same scene with these ways and this file.
             ["cargo", "run", "--manifest-path", "examples/bevy/Cargo.toml", "--", _, arguments @ ..] => {
-                let is_known = |word: &&str| word.parse::<u32>().is_ok() || ["sorted", "oit"].contains(word) || root().join(word).exists();
+                let is_known = |word: &&str| {
+                    word.parse::<u32>().is_ok() || ["sorted", "oit"].contains(word) || root().join(word).exists()
+                };
                 assert!(arguments.iter().all(is_known), "{}:{}: no way `{arguments:?}`", block.file, block.line);
             }
             // `.ci/run` runs it.

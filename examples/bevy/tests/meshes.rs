@@ -92,6 +92,12 @@ impl Stage {
         bytes.chunks_exact(8).map(pixel).collect()
     }
 
+    pub fn set_target(&mut self, size: [u32; 2]) {
+        self.image = target(&mut self.app, size, FORMAT);
+        let image = RenderTarget::Image(self.image.clone().into());
+        self.app.world_mut().entity_mut(self.camera).insert(image);
+    }
+
     pub fn remove_buffer(&mut self) {
         self.app.world_mut().entity_mut(self.camera).remove::<FragmentBuffer>();
     }
@@ -259,6 +265,29 @@ fn without_a_buffer_the_order_shows() {
     assert_eq!(first_difference(&stage.pixels(), &expected), None);
     stage.remove_buffer();
     assert!(first_difference(&stage.pixels(), &expected).is_some());
+}
+
+/// Meshes may come and go, and so may the size of the target.
+#[test]
+fn meshes_and_sizes_change() {
+    let _guard = alone();
+    let mut stage = Stage::new(Msaa::Sample4);
+    let mut quads = different_quads(&mut Numbers::seeded(3));
+    stage.set_buffer(FragmentBuffer::new("buffer Glass from ab_sb { }").unwrap_or_else(|error| panic!("{error}")));
+    for count in [3, 0, 9] {
+        stage.set_quads(&quads[..count], None);
+        assert_eq!(first_difference(&stage.pixels(), &expected(&quads[..count], None, None)), None, "{count} quads");
+    }
+    // A target of twice the size has four equal pixels for each.
+    stage.set_target([2 * SIZE[0], 2 * SIZE[1]]);
+    let seen = stage.pixels();
+    let at = |pixel: usize| {
+        let (x, y) = (pixel % SIZE[0] as usize, pixel / SIZE[0] as usize);
+        seen[2 * y * 2 * SIZE[0] as usize + 2 * x]
+    };
+    let sampled: Vec<[f32; 4]> = (0..seen.len() / 4).map(at).collect();
+    quads.reverse();
+    assert_eq!(first_difference(&sampled, &expected(&quads, None, None)), None);
 }
 
 /// An edge covers a part of the samples of a pixel. One surface has no order, so Bevy's own image is what is expected.

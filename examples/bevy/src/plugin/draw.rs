@@ -1,16 +1,21 @@
 //! Draws the frame of a camera: its depth is copied, the passes run, and their image is composited over the camera's colours.
 
+use std::collections::BTreeMap;
+
 use bevy::core_pipeline::core_3d::Transparent3d;
 use bevy::prelude::*;
 use bevy::render::camera::ExtractedCamera;
-use bevy::render::render_phase::{DrawFunctionId, DrawFunctions, PhaseItem, TrackedRenderPass, ViewSortedRenderPhases};
-use bevy::render::render_resource::PipelineCache;
+use bevy::render::render_phase::{
+    DrawFunctionId, DrawFunctions, PhaseItem, SortedRenderPhase, TrackedRenderPass, ViewSortedRenderPhases,
+};
+use bevy::render::render_resource::{CachedRenderPipelineId, PipelineCache};
 use bevy::render::renderer::{CurrentView, PendingCommandBuffers, RenderDevice, RenderQueue};
 use bevy::render::view::{ExtractedView, Msaa, RetainedViewEntity, ViewDepthTexture, ViewTarget};
 use fragbuf_follow::{Error, Scene};
 
 use super::losses::Reports;
 use super::meshes::{DrawNothing, DrawStored};
+use super::screen::Screen;
 use super::views::{FollowedView, FollowedViews};
 use crate::follower::{Geometry, GeometryDraw, Output};
 
@@ -49,7 +54,7 @@ impl Camera<'_> {
     fn draw(
         &self,
         followed: &mut FollowedView,
-        screen: &mut super::screen::Screen,
+        screen: &mut Screen,
         pending: &mut PendingCommandBuffers,
         reports: Option<&mut Reports>,
     ) -> Result<(), Error> {
@@ -94,28 +99,30 @@ impl Camera<'_> {
 struct Meshes<'w> {
     world: &'w World,
     entity: Entity,
-    phase: &'w bevy::render::render_phase::SortedRenderPhase<Transparent3d>,
+    phase: &'w SortedRenderPhase<Transparent3d>,
     /// The function that draws, and the one that items to be stored have.
     functions: [DrawFunctionId; 2],
-    /// The pipeline of each item in each pass: index of the item, index of the step, pipeline.
-    pipelines: Vec<(usize, usize, bevy::render::render_resource::CachedRenderPipelineId)>,
+    /// The pipelines, by the index of the item and that of the step.
+    pipelines: BTreeMap<(usize, usize), CachedRenderPipelineId>,
 }
 
 impl<'w> Meshes<'w> {
-    /// Returns the meshes of a camera, if their pipelines are compiled. A frame without some of them would be wrong.
+    /// Returns the meshes of a camera, if there are any. One whose pipelines are not compiled is left out of all passes, because passes that
+    /// draw the scene must produce the same fragments.
     fn of(camera: &Camera<'w>, followed: &FollowedView) -> Option<Self> {
         let world = camera.world;
         let phase = world.get_resource::<ViewSortedRenderPhases<Transparent3d>>()?.get(&camera.view)?;
         let functions = world.get_resource::<DrawFunctions<Transparent3d>>()?;
         let functions = [functions.read().get_id::<DrawStored>()?, functions.read().get_id::<DrawNothing>()?];
         let cache = world.get_resource::<PipelineCache>()?;
-        let mut pipelines = Vec::new();
+        let compiled = |item: &Transparent3d, step: usize| {
+            followed.pipeline(item.pipeline, step).filter(|id| cache.get_render_pipeline(*id).is_some())
+        };
+        let mut pipelines = BTreeMap::new();
         for (index, item) in phase.items.values().enumerate().filter(|(_, item)| item.draw_function == functions[1]) {
-            for store in &followed.stores {
-                let pipeline = followed.pipeline(item.pipeline, store.step)?;
-                cache.get_render_pipeline(pipeline)?;
-                pipelines.push((index, store.step, pipeline));
-            }
+            let of_passes =
+                followed.stores.iter().map(|store| Some(((index, store.step), compiled(item, store.step)?)));
+            pipelines.extend(of_passes.collect::<Option<Vec<_>>>().unwrap_or_default());
         }
         (!pipelines.is_empty()).then_some(Meshes { world, entity: camera.entity, phase, functions, pipelines })
     }
@@ -139,8 +146,7 @@ impl Geometry for Meshes<'_> {
         }
         let mut index = 0;
         while let Some((_, item)) = self.phase.items.get_index(index) {
-            let of_pass = |(at, step, _): &&(usize, usize, _)| *at == index && *step == draw.call.step;
-            let pipeline = self.pipelines.iter().find(of_pass).and_then(|(_, _, id)| cache.get_render_pipeline(*id));
+            let pipeline = self.pipelines.get(&(index, draw.call.step)).and_then(|id| cache.get_render_pipeline(*id));
             if let Some(pipeline) = pipeline.filter(|_| !item.batch_range().is_empty()) {
                 render.set_render_pipeline(pipeline);
                 function.draw(self.world, &mut render, self.entity, item).map_err(|error| failed(&error))?;
