@@ -31,17 +31,16 @@ impl Frame<'_, '_> {
     pub fn dispatch(&mut self, pass: &Pass, call: &Call<'_>) -> Result<(), Error> {
         let group = self.bind_group(pass, call)?;
         let indirect = self.indirect(pass, call)?;
-        let groups =
-            pass.groups.iter().map(|formula| Ok(call.value(formula)? as u32)).collect::<Result<Vec<u32>, Error>>()?;
+        let most = self.gpu.device.limits().max_compute_workgroups_per_dimension;
+        let [x, y, z] = call.groups(pass, [most; 3])?;
         let pipeline = self.pipelines.compute(call.step).cloned().ok_or_else(|| no_pipeline(pass))?;
         let descriptor = wgpu::ComputePassDescriptor { label: Some(&pass.name), timestamp_writes: None };
         let mut compute = self.encoder().begin_compute_pass(&descriptor);
         compute.set_pipeline(&pipeline);
         compute.set_bind_group(group.0, &group.1, &[]);
-        let count = |axis: usize| groups.get(axis).copied().unwrap_or(1);
         match indirect {
             Some(arguments) => compute.dispatch_workgroups_indirect(&arguments, 0),
-            None => compute.dispatch_workgroups(count(0), count(1), count(2)),
+            None => compute.dispatch_workgroups(x, y, z),
         }
         Ok(())
     }
