@@ -9,7 +9,7 @@
 //! 6. [`memory`]: k from a memory budget and a hit ratio, and [`peeling`]: every fragment in little memory.
 //! 7. [`figures`]: experiments of the papers, with the comparison of their trends.
 //! 8. [`embed`]: frames in your own engine, [`material`]: a shader of your own that stores fragments, [`browser`]: frames on a web page,
-//!    [`opengl`]: frames by OpenGL and OpenGL ES, [`vulkan`]: a host for Vulkan, part by part.
+//!    [`opengl`]: frames by OpenGL and OpenGL ES, [`vulkan`]: a host for Vulkan, part by part, [`bevy`]: a plugin for Bevy.
 //! 9. [`extend`]: your own storage, snapshots.
 //! 10. [`check`]: the checker, which runs the fragments of a pixel in every interleaving.
 //! 11. [`verdict`]: what a verdict of the checker means, and what it does not.
@@ -51,6 +51,8 @@ pub mod browser {}
 pub mod opengl {}
 #[doc = include_str!("guide/vulkan.md")]
 pub mod vulkan {}
+#[doc = include_str!("guide/bevy.md")]
+pub mod bevy {}
 #[doc = include_str!("guide/extend.md")]
 pub mod extend {}
 #[doc = include_str!("guide/check.md")]

@@ -160,6 +160,22 @@ fn files_are_short_and_have_headers() {
     }
 }
 
+/// The host for Bevy follows manifests like the others.
+#[test]
+fn the_host_for_bevy_names_no_technique() {
+    let registry = Registry::builtin();
+    let sources = files("examples/bevy/src", "rs");
+    assert!(sources.len() > 20, "{sources:?}");
+    for path in sources {
+        let text = read(&path);
+        assert!(text.lines().count() <= 400 && text.starts_with("//!"), "{}", path.display());
+        for technique in registry.techniques() {
+            assert!(!text.contains(&format!("{}\"", technique.key)), "{}: {}", path.display(), technique.key);
+            assert!(!text.contains(&format!(" {} {{", technique.key)), "{}: {}", path.display(), technique.key);
+        }
+    }
+}
+
 /// The README names every axis in the order of the registry; the guide describes their values.
 #[test]
 fn the_readme_names_every_axis() {
@@ -184,7 +200,8 @@ fn the_guide_has_every_value_with_what_it_does() {
 fn every_crate_can_be_published() {
     let manifests =
         ["templates", "dsl", "codegen", "backends", "examples"].iter().flat_map(|folder| files(folder, "toml"));
-    let crates: Vec<PathBuf> = manifests.filter(|path| path.ends_with("Cargo.toml")).collect();
+    let is_published = |path: &PathBuf| !read(path).contains("\npublish = false\n");
+    let crates: Vec<PathBuf> = manifests.filter(|path| path.ends_with("Cargo.toml")).filter(is_published).collect();
     assert_eq!(crates.len(), 19);
     for path in crates.into_iter().chain([root().join("Cargo.toml")]) {
         let text = read(&path);

@@ -90,6 +90,17 @@ fn lines<'a>(block: &'a Block) -> Vec<Line<'a>> {
             ["cargo", "run", "-p", "fragbuf-vulkan-host", "--", "passes", "panes.png", "--validate"] => {
                 assert!(block.is_in("vulkan.md"));
             }
+            // `pictures` of the crate draws the same scene with these ways and this file.
+            ["cargo", "run", "--manifest-path", "examples/bevy/Cargo.toml", "--", _, arguments @ ..] => {
+                let is_known = |word: &&str| {
+                    word.parse::<u32>().is_ok() || ["sorted", "oit"].contains(word) || root().join(word).exists()
+                };
+                assert!(arguments.iter().all(is_known), "{}:{}: no way `{arguments:?}`", block.file, block.line);
+            }
+            // `.ci/run` runs it.
+            ["cargo", "test", "--locked", "--manifest-path", "examples/bevy/Cargo.toml"] => {
+                assert!(read(".ci/run").lines().any(|line| line == command), "`.ci/run` does not run `{command}`");
+            }
             [".ci/run"] => assert!(root().join(".ci/run").exists()),
             _ => block.fail(&format!("no test for `{command}`")),
         }

@@ -184,14 +184,21 @@ fn is_a_part_of_the_example(block: &Block) {
     }
 }
 
+/// The folders with the files of the host that a chapter is about, or of what hosts share.
+const HOSTS: [(&str, &[&str]); 3] = [
+    ("opengl.md", &["backends/run/opengl/src", "backends/run/follow/src"]),
+    ("vulkan.md", &["backends/run/vulkan/src", "backends/run/follow/src"]),
+    ("bevy.md", &["examples/bevy/src", "examples/bevy/src/plugin", "examples/bevy/examples"]),
+];
+
 /// A part of a crate is in a file of the host that the chapter is about, or of what hosts share.
 fn is_a_part_of_a_host(block: &Block) {
-    let Some(host) = ["opengl", "vulkan"].into_iter().find(|host| block.is_in(&format!("{host}.md"))) else {
+    let Some((_, folders)) = HOSTS.iter().find(|(chapter, _)| block.is_in(chapter)) else {
         block.fail("only chapters about hosts show parts of a crate")
     };
-    let folders = [host, "follow"].map(|folder| root().join(format!("backends/run/{folder}/src")));
-    let files = folders.iter().flat_map(|folder| std::fs::read_dir(folder).unwrap()).map(|file| file.unwrap().path());
-    let mut texts = files.filter(|path| path.is_file()).map(|path| std::fs::read_to_string(path).unwrap());
+    let files = folders.iter().flat_map(|folder| std::fs::read_dir(root().join(folder)).unwrap());
+    let files = files.map(|file| file.unwrap().path());
+    let mut texts = files.filter(|path| path.is_file()).filter_map(|path| std::fs::read_to_string(path).ok());
     if !texts.any(|text| text.contains(&block.text)) {
         block.fail("not a part of the host");
     }

@@ -46,6 +46,11 @@ pub struct Binding {
     pub kind: BindingKind,
     /// Of a texture: `all`, `depth-only` or `stencil-only`.
     pub aspect: Option<String>,
+    /// Of a texture: its sample type, as WebGPU names it.
+    pub sample_type: Option<String>,
+    /// Of a texture: whether it has several samples per pixel.
+    #[serde(default)]
+    pub multisampled: bool,
 }
 
 /// What a binding is.
