@@ -121,21 +121,70 @@ fn a_storage_that_does_not_fit_is_one_error() {
     assert!(labels.iter().any(|label| label.starts_with("`peeling: k_layers` requires")), "{labels:?}");
 }
 
-/// An error in the closure of the effect does not move other errors about the effect to the first line.
+/// An error in the closure of the effect does not move other errors about the effect to the first line. What a closure with errors needs is
+/// unknown, so that it may be interrupted.
 #[test]
 fn errors_about_an_effect_stay_at_its_closure() {
-    let of = |closure: &str| {
-        let file =
-            text(&format!("buffer B from k_peeling {{\n    keep 4;\n    resolve |fragments| {{ {closure} }}\n}}"));
-        diagnostics(&file, &[]).into_iter().filter(|error| error.code.name == "missing-capability").collect::<Vec<_>>()
+    let of = |technique: &str, closure: &str| -> Vec<(usize, String)> {
+        let file = text(&format!("buffer B from {technique} {{\n\n    resolve |fragments| {{ {closure} }}\n}}"));
+        let errors = diagnostics(&file, &[]).into_iter().filter(|error| error.code.name == "missing-capability");
+        errors.map(|error| (error.span.line as usize, error.message)).collect()
     };
-    let right = of("vec4(fragments[0].depth, 0.0, 0.0, 1.0)");
-    assert!(!right.is_empty() && right.iter().all(|error| error.span.line == 3), "{right:#?}");
+    let right = "let mut a = 0.0; for f in fragments { a += f.depth; } vec4(a, a, a, 1.0)";
+    let joined = of("dual_ll", right);
+    assert!(!joined.is_empty() && joined.iter().all(|(line, _)| *line == 3), "{joined:?}");
+    assert_eq!(of("k_peeling", right), []);
+    assert_eq!(of("k_peeling", "vec4(fragments[0].depth, 0.0, 0.0, 1.0)").len(), 1);
     for wrong in ["vec4(fragments[0].depth, 0, 0.0, 1.0)", "vec4(fragments[0].depth, 0.0 0.0, 1.0)", "nothing"] {
-        let lines = |errors: &[Diagnostic]| {
-            errors.iter().map(|error| (error.span.line, error.message.clone())).collect::<Vec<_>>()
-        };
-        assert_eq!(lines(&of(wrong)), lines(&right), "{wrong}");
+        assert_eq!((of("dual_ll", wrong), of("k_peeling", wrong)), (joined.clone(), Vec::new()), "{wrong}");
+    }
+}
+
+/// An effect that needs all fragments at once is an error where it needs them, for each reason.
+#[test]
+fn what_cannot_be_interrupted_is_marked() {
+    let cases = [
+        ("vec4(0.0, 0.0, 0.0, 1.0)", "no loop", 1),
+        ("if true {\nfor f in fragments { return f.color; } } vec4(0.0, 0.0, 0.0, 1.0)", "inside of another block", 2),
+        (
+            "for f in fragments { return f.color; }\nfor f in fragments { return f.color; } vec4(0.0, 0.0, 0.0, 1.0)",
+            "second loop",
+            2,
+        ),
+        (
+            "let mut a = 0.0;\nfor f in fragments.iter().rev() { a += f.depth; } vec4(a, a, a, 1.0)",
+            "begins at the farthest",
+            2,
+        ),
+        (
+            "let mut a = 0.0;\nfor f in fragments { a += f.depth;\na -= fragments[1].depth; } vec4(a, a, a, 1.0)",
+            "by its index",
+            3,
+        ),
+        (
+            "let mut a = 0.0;\nfor f in fragments { a += f.depth; }\na /= fragments.len() as f32; vec4(a, a, a, 1.0)",
+            "their number",
+            3,
+        ),
+        (
+            "let mut a = 0.0;\nif a > 1.0 { return vec4(a, a, a, 1.0); }\nfor f in fragments { a += f.depth; } vec4(a, a, a, 1.0)",
+            "before its loop",
+            2,
+        ),
+    ];
+    for (closure, reason, line) in cases {
+        for technique in ["k_peeling", "f2b_ll", "f2b"] {
+            let file = text(&format!("buffer B from {technique} {{ resolve |fragments| {{ {closure} }} }}"));
+            let errors = diagnostics(&file, &[]);
+            let [error] = errors.as_slice() else { panic!("{closure}: {errors:?}") };
+            assert!(error.message.contains(reason), "{closure}: {error}");
+            assert_eq!(error.span.line as usize, line, "{closure}: {error}");
+        }
+        assert_eq!(
+            diagnostics(&text(&format!("buffer B from ab_ll {{ resolve |fragments| {{ {closure} }} }}")), &[]),
+            [],
+            "{closure}"
+        );
     }
 }
 

@@ -1,7 +1,7 @@
 //! Tests every combination of rows. An accepted combination passes naga and every emitter; a rejected one has a diagnostic with help.
 //! Rows of an axis with equal capabilities and conditions are equivalent under the rules, so one combination per equivalence class is
-//! checked, and for some classes a random one in addition. A covering set also passes glslang, spirv-val and Tint. If naga rejects what the
-//! rules accept, fragbuf has a defect.
+//! checked, and for some classes a random one in addition. A covering set also passes glslang, spirv-val and Tint, and a
+//! sample of it with every row glslang's translations to SPIR-V. If naga rejects what the rules accept, fragbuf has a defect.
 
 mod combinations;
 

@@ -341,7 +341,6 @@ pub(crate) const OF_SLOTS: &[(&str, &str, &str, &str)] = &[
     ("peeling/id_pairs_both_sides", "accumulated_join(3u, 2u, pixel);", "accumulated_join(3u, 3u, pixel);", COLORS),
     ("peeling/id_pairs_tested", "accumulated_join(PEELING_LEAST, PEELING_GREATEST, accumulated_pixel);", "", COLORS),
     ("peeling/id_pairs_tested", "accumulated_slot = slot;", "", COLORS),
-    ("peeling/ids_on_demand", "return true;", "", "more iterations: every layer is peeled by ids"),
     ("peeling/ids_on_demand", "accumulated_join(PEELING_LEAST, PEELING_GREATEST, pixel);", "", COLORS),
     (
         "peeling/ids_on_demand",
@@ -378,12 +377,6 @@ pub(crate) const OF_SLOTS: &[(&str, &str, &str, &str)] = &[
         "a minimum that changes nothing",
     ),
     ("peeling/ids_on_demand", "return false;", "", "what follows returns the same: the key is not the layer's"),
-    (
-        "peeling/ids_on_demand",
-        "return frame.iteration == 0u;",
-        "return frame.iteration == 1u;",
-        "two fragments take two iterations: test `peeling_slots` of the runtime has one",
-    ),
     (
         "peeling/ids_on_demand",
         "return;",
