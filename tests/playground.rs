@@ -67,6 +67,7 @@ fn panels_show_costs_axes_verdicts_and_differences() {
     run(&[
         "costs_are_those_of_the_frame",
         "a_histogram_of_an_earlier_picture_is_not_shown",
+        "depth_complexity_is_explained_without_k",
         "an_axis_is_chosen_in_the_table",
         "an_axis_of_an_earlier_text_is_not_chosen",
         "the_checker_shows_a_failing_schedule",

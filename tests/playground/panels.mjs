@@ -188,6 +188,28 @@ export async function a_histogram_of_an_earlier_picture_is_not_shown(page) {
     await page.unroute("**/api/predict");
 }
 
+/** A description without k says why it has no histogram, and peeling that it repeats until no fragment is left. */
+export async function depth_complexity_is_explained_without_k(page) {
+    const panel = await openTab(page, "Costs");
+    const count = panel.getByRole("button", { name: "Count" });
+    await write(page, "buffer Mine from ab_ll {\n}\n");
+    await heading(page, "No problems");
+    await count.click();
+    await panel.getByText(/^it keeps every fragment, so it has no k/).waitFor();
+    assert.notEqual(await page.getByRole("status").getAttribute("data-state"), "error");
+    await write(page, "buffer Mine from k_peeling {\n    keep 2;\n}\n");
+    await heading(page, "No problems");
+    await count.click();
+    await panel.getByRole("img", { name: /an iteration draws the scene for the next 2 of each pixel/ }).waitFor();
+    await page.getByText("fragments kept per pixel and iteration, of at most 2").waitFor();
+    assert.equal(await panel.locator("rect.beyond").count(), 0);
+    await write(page, "buffer Mine from kplus_array {\n    keep 2;\n}\n");
+    await heading(page, "No problems");
+    await count.click();
+    await panel.getByRole("img", { name: /With k = 2, .* of the pixels and/ }).waitFor();
+    assert.ok((await panel.locator("rect.beyond").count()) > 0);
+}
+
 /** Two descriptions side by side: equal ones have no difference, others a heat map. */
 export async function two_descriptions_are_compared(page) {
     await write(page, "buffer Mine from kplus_array {\n    keep 4;\n}\n");

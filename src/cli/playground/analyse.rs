@@ -1,7 +1,7 @@
 //! Answers what a description is: its diagnostics, and while it has no errors, its parts, its cost and its soundness on every target.
 
 use fragbuf::analysis::Lines;
-use fragbuf::vocabulary::Kind;
+use fragbuf::vocabulary::{Capability, Kind};
 use fragbuf::{
     Diagnostic, Diagnostics, Form, Plan, Registry, Request, TARGETS, Target, Variant, plan, select, tier, tier_meaning,
 };
@@ -91,7 +91,7 @@ fn facts(variant: &Variant, registry: &Registry) -> Result<Value, Problem> {
     Ok(json!({
         "name": variant.name.value,
         "technique": variant.technique,
-        "keep": variant.keep.zip(first).map(|(k, plan)| json!({ "k": k, "capacity": plan.capacity() })),
+        "keep": variant.keep.zip(first).map(|(k, plan)| keep(k, plan)),
         "attributes": variant.attributes.iter().map(attribute).collect::<Vec<_>>(),
         "uniforms": variant.uniforms.iter().map(uniform).collect::<Vec<_>>(),
         "words_per_pixel": first.map(|plan| &plan.words_per_pixel),
@@ -101,6 +101,12 @@ fn facts(variant: &Variant, registry: &Registry) -> Result<Value, Problem> {
         "hazards": first.map(|plan| plan.hazards.iter().map(|hazard| json!({ "name": hazard.name, "description": hazard.description })).collect::<Vec<_>>()),
         "targets": targets(&plans, &unsupported),
     }))
+}
+
+/// Returns k, the greatest k, and whether iterations keep as many each, until no fragment is left.
+fn keep(k: u32, plan: &Plan) -> Value {
+    let repeats = plan.selection.provides().contains(&Capability::KeepsLater);
+    json!({ "k": k, "capacity": plan.capacity(), "repeats": repeats })
 }
 
 fn passes(plan: &Plan) -> Vec<Value> {

@@ -1,6 +1,5 @@
 //! D13, Fig. 7: peeling and A-buffers over the resolution, in a scene without coplanar fragments. The paper draws a crank of 2 to 17 layers on a GTX
-//! 480, at up to 1920 × 1080; here random quads of as many layers. F2B-3P, DUAL and DUAL-2P are missing; F2B-1P is
-//! ours.
+//! 480, at up to 1920 × 1080; here random quads of as many layers. F2B-2P, F2B-3P, DUAL and DUAL-2P are missing.
 
 use crate::cli::figure::claim::{Change, Check, Claim};
 use crate::cli::figure::experiment::{Axis, Chart, Experiment, Kind, Measure, Panel, Passes, Series, Side, Sweep};
@@ -21,8 +20,6 @@ const PANEL: Panel = Panel {
     series: &[
         Series::new("F2B", "f2b", &[]),
         Series::new("F2B2", "f2b2", &[]),
-        Series::new("F2B-1P", "f2b_1p", &[]),
-        Series::new("F2B-2P", "f2b_2p", &[]),
         Series::new("F2B-LL", "f2b_ll", &[]),
         Series::new("F2B-FAB", "f2b_fab", &[]),
         Series::new("F2B-KB", "f2b_kb", &[]),

@@ -1,5 +1,5 @@
 //! D13, Fig. 8: peeling and A-buffers over the number of coplanar fragments per layer. The paper draws overlapping instances of a fandisk; here four
-//! planes over the whole frame, each drawn so many times. F2B-3P and DUAL-2P are missing; F2B-1P is ours.
+//! planes over the whole frame, each drawn so many times. F2B-2P, F2B-3P and DUAL-2P are missing.
 
 use crate::cli::figure::claim::{Check, Claim};
 use crate::cli::figure::experiment::{Axis, Chart, Experiment, Kind, Measure, Panel, Passes, Series, Side, Sweep};
@@ -23,8 +23,6 @@ const PANEL: Panel = Panel {
     },
     side: Side::Fixed(256),
     series: &[
-        Series::new("F2B-1P", "f2b_1p", &[]),
-        Series::new("F2B-2P", "f2b_2p", &[]),
         Series::new("F2B-LL", "f2b_ll", &[]),
         Series::new("F2B-FAB", "f2b_fab", &[]),
         Series::new("F2B-KB", "f2b_kb", &[]),

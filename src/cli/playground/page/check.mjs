@@ -104,10 +104,11 @@ function shown(report, seconds) {
     if (report.not_applicable) return [element("p", { className: "verdict" }, "Not applicable: ", report.not_applicable)];
     const [kind, verdict] = verdictOf(report);
     const cases = `${count(report.cases)} ${report.cases === 1 ? "case" : "cases"}, ${count(report.states ?? 0)} states, ${seconds} s`;
-    const k = Array.isArray(report.k) ? report.k.join(", ") : report.k;
+    const k = [report.k ?? []].flat().join(", ");
+    const what = [`${report.on}, ${report.model}`, k && `k = ${k}`, cases].filter(Boolean);
     return [
         element("p", { className: `verdict ${kind}` }, verdict),
-        element("p", { className: "note" }, `${report.on}, ${report.model}; k = ${k}; ${cases}`),
+        element("p", { className: "note" }, what.join("; ")),
         ...(report.notes ?? []).map((note) => element("p", { className: "note" }, note)),
         report.hazards?.length > 0 &&
             element(

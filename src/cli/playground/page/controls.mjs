@@ -171,7 +171,7 @@ export function createValues(elements, store) {
         if (described && (changed.has("k") || changed.has("uniforms"))) showValues();
     });
     return {
-        /** @param {{ keep: { k: number, capacity: number } | null, uniforms: Uniform[] }} description */
+        /** @param {{ keep: { k: number, capacity: number, repeats?: boolean } | null, uniforms: Uniform[] }} description */
         show({ keep, uniforms }) {
             const key = JSON.stringify([keep, uniforms]);
             const isOther = key !== built;
@@ -203,8 +203,9 @@ export function createValues(elements, store) {
 /** Fills the group of k. Returns what shows its value. */
 function kSlider(parent, keep, change) {
     const capacity = keep?.capacity ?? 0;
+    const where = keep?.repeats ? " and iteration" : "";
     if (capacity <= 1) {
-        const text = keep ? "Keeps one fragment per pixel." : "Keeps every fragment: no k to choose.";
+        const text = keep ? `Keeps one fragment per pixel${where}.` : "Keeps every fragment: no k to choose.";
         fill(parent, element("p", { className: "note" }, text));
         return () => {};
     }
@@ -217,7 +218,7 @@ function kSlider(parent, keep, change) {
         whole: true,
         changed: (k) => change({ k }),
     });
-    fill(parent, slider.row, element("p", { className: "note" }, `fragments kept per pixel, of at most ${capacity}`));
+    fill(parent, slider.row, element("p", { className: "note" }, `fragments kept per pixel${where}, of at most ${capacity}`));
     return ({ k }) => slider.show(k);
 }
 

@@ -23,12 +23,17 @@ export function createCosts(elements, { predict, check, failed }) {
     let description = null;
     let frame = null;
     const showHistogram = () => {
-        if (histogram) drawHistogram(elements.histogram, histogram, k);
+        if (histogram) drawHistogram(elements.histogram, histogram, k, description?.keep?.repeats);
     };
     const forgetHistogram = () => {
         histogram = null;
         const text = "The picture changed. Count again to see its histogram.";
         fill(elements.histogram, element("p", { className: "note" }, text));
+    };
+    /** Shows why this description has no histogram. */
+    const explain = (message) => {
+        histogram = null;
+        fill(elements.histogram, element("p", { className: "note" }, message.replace(/^-: /, "")));
     };
     elements.predict.addEventListener("click", async () => {
         elements.predict.disabled = true;
@@ -38,7 +43,8 @@ export function createCosts(elements, { predict, check, failed }) {
             if (changes === before) showHistogram();
             else forgetHistogram();
         } catch (error) {
-            failed(error);
+            if (error.status === 422) explain(error.message);
+            else failed(error);
         } finally {
             elements.predict.disabled = false;
         }
@@ -86,7 +92,8 @@ function figures(description, frame) {
         figure("this frame", Number.isFinite(frame?.bytes) ? bytes(frame.bytes) : null),
         description.bytes !== undefined && figure("at 1920 × 1080", sizeOf(description.bytes)),
         figure("passes", count(passes.length), passes.map(({ name }) => name).join(", ")),
-        figure("draws of the scene", description.draws ?? count(drawn)),
+        // Loops that end on a condition count with their limit.
+        figure(`draws of the scene${frame?.loops?.length > 0 ? ", at most" : ""}`, description.draws ?? count(drawn)),
         figure("hit ratio", Number.isFinite(frame?.hit_ratio) ? percent(frame.hit_ratio, 1) : null),
     ];
 }

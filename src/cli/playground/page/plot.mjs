@@ -99,8 +99,9 @@ function ceiling(value) {
  * @param {HTMLElement} parent
  * @param {number[]} histogram pixels by their number of fragments, from 1
  * @param {number | null} k null: every fragment is kept
+ * @param {boolean} [repeats] iterations keep k fragments each, until none is left
  */
-export function drawHistogram(parent, histogram, k) {
+export function drawHistogram(parent, histogram, k, repeats = false) {
     const covered = [...histogram];
     while (covered.length > 1 && covered.at(-1) === 0) covered.pop();
     const group = Math.max(1, Math.ceil(covered.length / 90));
@@ -111,7 +112,7 @@ export function drawHistogram(parent, histogram, k) {
     const height = (value) => (value > 0 ? ((0.4 + Math.log10(value)) / (0.4 + Math.log10(most))) * (SIZE.height - 22) : 0);
     const bars = pixels.map((value, index) => {
         const first = index * group + 1;
-        const kept = k === null || first <= k;
+        const kept = k === null || repeats || first <= k;
         const tall = Math.max(height(value), 0);
         const rect = { x: index * width + 0.5, y: SIZE.height - 14 - tall, width: Math.max(width - 1, 0.5), height: tall };
         const title = svg(
@@ -133,7 +134,7 @@ export function drawHistogram(parent, histogram, k) {
             (index - 1) * group + 1,
         ),
     );
-    const text = summary(covered, k);
+    const text = summary(covered, k, repeats);
     const drawing = svg(
         "svg",
         { viewBox: `0 0 ${SIZE.width} ${SIZE.height}`, class: "plot", role: "img", "aria-label": text },
@@ -153,12 +154,13 @@ export function drawHistogram(parent, histogram, k) {
 
 const sum = (values) => values.reduce((total, value) => total + value, 0);
 
-function summary(covered, k) {
+function summary(covered, k, repeats) {
     const pixels = sum(covered);
     const fragments = covered.reduce((total, value, index) => total + value * (index + 1), 0);
     if (pixels === 0) return "No pixel has a fragment.";
     const whole = `${count(fragments)} fragments in ${count(pixels)} covered pixels, at most ${count(covered.length)} in one`;
     if (k === null) return `${whole}. Every fragment is kept.`;
+    if (repeats) return `${whole}. With k = ${k}, an iteration draws the scene for the next ${k} of each pixel, until none is left.`;
     const within = sum(covered.slice(0, k));
     const kept = covered.reduce((total, value, index) => total + value * Math.min(index + 1, k), 0);
     return `${whole}. With k = ${k}, ${percent(within, pixels)} of the pixels and ${percent(kept, fragments)} of the fragments are kept whole.`;
