@@ -28,6 +28,7 @@ if (unknown.length > 0) throw new Error(`no scenario ${unknown.join(", ")}`);
 const EXPECTED = {
     an_error_of_a_request_is_shown: [/503/],
     a_model_is_opened_and_dropped: [/422/],
+    depth_complexity_is_explained_without_k: [/422/],
     a_technique_that_cannot_be_read_is_reported: [/503/],
 };
 
