@@ -30,9 +30,10 @@ fn peeling_find_first(pixel: u32, key: u32) {
     }
 }
 
-/// Returns whether the ids of the pixel's layer are unknown.
+/// Returns whether the ids of the pixel's layer are unknown. The least id may be EMPTY, but then the greatest is not.
 fn peeling_is_new(pixel: u32) -> bool {
-    return window_load(ID_PAIRS_LEAST, PEELING_FRONT, pixel) == EMPTY;
+    return window_load(ID_PAIRS_LEAST, PEELING_FRONT, pixel) == EMPTY
+        && window_load(ID_PAIRS_GREATEST, PEELING_FRONT, pixel) == EMPTY;
 }
 
 /// Returns whether this iteration stores the fragments of an id of the pixel's layer.
@@ -116,6 +117,7 @@ fn peeling_advance() {
     }
     window_store(ID_PAIRS_KEY, PEELING_FRONT, pixel, found_load(ID_PAIRS_NEXT, PEELING_FRONT, pixel));
     window_store(ID_PAIRS_LEAST, PEELING_FRONT, pixel, EMPTY);
+    window_store(ID_PAIRS_GREATEST, PEELING_FRONT, pixel, EMPTY);
 }
 
 fn peeling_reached(pixel: u32) -> u32 {

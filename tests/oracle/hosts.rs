@@ -1,6 +1,7 @@
 //! What the tests of every host share. A test binary includes this file with a `#[path]`, and takes what it needs.
 #![allow(dead_code, reason = "each test binary uses a part of it")]
 
+pub mod continued;
 pub mod cpu_image;
 pub mod numbers;
 pub mod panes;

@@ -17,7 +17,7 @@ pub struct Quad {
 }
 
 impl Quad {
-    fn covers(&self, x: u32, y: u32) -> bool {
+    pub fn covers(&self, x: u32, y: u32) -> bool {
         (self.x[0]..self.x[1]).contains(&x) && (self.y[0]..self.y[1]).contains(&y)
     }
 }

@@ -1,13 +1,16 @@
 //! What no built-in technique uses: exchanged resources, a loop that ends when no sample passes, and objects whose boxes are tested.
+//! And a closure that iterations interrupt.
 
 use fragbuf_codegen::Form;
 use fragbuf_opengl_host::{Api, Object, Scene};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::Objects;
 
-use crate::draw::{context, generated, host, inputs};
+use crate::draw::{context, generated, host, inputs, render};
+use crate::hosts::continued::{assert_continued, continued};
+use crate::hosts::numbers::Numbers;
 use crate::hosts::peeled_scene::{SIZE, assert_peeled, layers, object, registry, registry_with_boxes};
-use crate::hosts::scene::vertices;
+use crate::hosts::scene::{quads, vertices};
 use crate::hosts::technique::IDENTITY;
 use crate::hosts::tested_storage::tested;
 
@@ -39,4 +42,22 @@ fn exchanged_resources_and_a_loop_on_an_occlusion_query_peel_the_scene() {
 #[test]
 fn objects_are_drawn_if_their_boxes_are_visible() {
     peel(&registry_with_boxes());
+}
+
+#[test]
+fn a_closure_continues_in_the_next_iteration() {
+    let quads = quads(14, SIZE, &mut Numbers::seeded(5));
+    for api in [Api::OpenGl, Api::OpenGlEs] {
+        let context = context(api);
+        for technique in ["f2b_ll", "k_peeling"] {
+            let variant = continued(technique);
+            for form in [Form::Program, Form::Module] {
+                let generation =
+                    generated(api, form, &variant, &Registry::builtin()).unwrap_or_else(|why| panic!("{why}"));
+                let mut host = host(&context, &generation, SIZE).unwrap_or_else(|error| panic!("{error}"));
+                let seen = render(&mut host, form, &quads, SIZE).unwrap_or_else(|error| panic!("{error}"));
+                assert_continued(&format!("{technique}, {api}, {form:?}"), &seen, &quads, SIZE);
+            }
+        }
+    }
 }

@@ -273,6 +273,34 @@ fn equal_ids_are_counted() {
     }
 }
 
+/// Ids of 0 and of all ones are ids as others, alone in a layer, several times, and together.
+#[test]
+fn the_least_and_the_greatest_id_are_ids() {
+    let stage = device();
+    let quad = |depth, color| Quad { x: [0, 5], y: [0, 3], depth, color, id: 0 };
+    let (none, all, other) = ([0; 4], [255; 4], [9, 7, 40, 128]);
+    let scenes: [&[[u8; 4]]; 6] =
+        [&[all, all], &[none, none], &[all, none], &[all], &[none], &[none, other, all, other, all]];
+    for key in ["f2b_1p", "f2b_2p", "f2b_3p", "dual_2p"] {
+        for colors in scenes {
+            // Another layer follows.
+            let quads: Vec<Quad> =
+                colors.iter().map(|color| quad(0.25, *color)).chain([quad(0.5, [1, 200, 3, 128])]).collect();
+            let (seen, loops, counters) = counted(&stage, &technique(key, &[EVERY_EVENT]), &quads, None);
+            let ids: BTreeSet<&[u8; 4]> = colors.iter().collect();
+            let equal = 15 * (colors.len() - ids.len()) as u64;
+            let what = format!("{key}, {colors:?}");
+            assert_eq!((u64::from(counters.get("equal_keys")), counters.lost()), (equal, equal), "{what}");
+            assert_eq!(loops[0].end, LoopEnd::ConditionMet, "{what}");
+            let kept = |fragments: Vec<Quad>| {
+                let mut seen = BTreeSet::new();
+                fragments.into_iter().filter(|quad| seen.insert(words(quad))).collect()
+            };
+            assert_eq!(first_difference(&seen, &by_pixel(&quads, kept)), None, "{what}");
+        }
+    }
+}
+
 /// What a limit of iterations leaves is counted.
 #[test]
 fn fragments_that_slots_leave_are_counted() {

@@ -1,11 +1,12 @@
 //! What no built-in technique uses: exchanged resources, a loop that ends when no sample passes, and objects whose
-//! boxes are tested. And what the description of a caller uses: a closure and uniforms.
+//! boxes are tested. And what the description of a caller uses: a closure and uniforms, a closure that iterations interrupt.
 
 use fragbuf_model::check;
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::Objects;
 use fragbuf_vulkan_host::{Object, Scene, Validation};
 
+use crate::hosts::continued::{assert_continued, continued};
 use crate::hosts::numbers::Numbers;
 use crate::hosts::peeled_scene::{SIZE, assert_peeled, layers, object, registry, registry_with_boxes};
 use crate::hosts::scene::{Quad, quads, vertices};
@@ -75,5 +76,20 @@ fn a_closure_gets_the_uniforms_of_the_caller() {
         // A pixel without fragments keeps the background.
         let expected = if count == 0 { BACKGROUND[0] as f32 } else { count as f32 / 32.0 };
         assert!((pixel[0] - expected).abs() < 1.0 / 255.0, "pixel {index}: {pixel:?}, not {expected}");
+    }
+}
+
+#[test]
+fn a_closure_continues_in_the_next_iteration() {
+    let context = context(Validation::On);
+    let quads = quads(14, SIZE, &mut Numbers::seeded(5));
+    for technique in ["f2b_ll", "k_peeling"] {
+        let generated = Generated::of(&continued(technique), &Registry::builtin());
+        let mut host = generated.host(&context, SIZE).unwrap_or_else(|error| panic!("{error}"));
+        for rows in [None, Some(2)] {
+            host.set_rows(rows).unwrap();
+            let seen = draw(&mut host, &quads, SIZE).unwrap_or_else(|error| panic!("{error}"));
+            assert_continued(&format!("{technique}, slices of {rows:?} rows"), &seen.pixels, &quads, SIZE);
+        }
     }
 }

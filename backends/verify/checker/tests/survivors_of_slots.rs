@@ -366,6 +366,18 @@ pub(crate) const OF_SLOTS: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "peeling/ids_on_demand",
+        "window_store(ID_PAIRS_GREATEST, PEELING_FRONT, pixel, EMPTY);",
+        "",
+        "an iteration more: test `peeling_slots` of the runtime counts iterations",
+    ),
+    (
+        "peeling/ids_on_demand",
+        "window_store(ID_PAIRS_LEAST, PEELING_FRONT, pixel, EMPTY); window_store(ID_PAIRS_GREATEST, PEELING_FRONT, pixel, EMPTY);",
+        "window_store(ID_PAIRS_GREATEST, PEELING_FRONT, pixel, EMPTY); window_store(ID_PAIRS_LEAST, PEELING_FRONT, pixel, EMPTY);",
+        "one invocation per pixel, and no other reads them",
+    ),
+    (
+        "peeling/ids_on_demand",
         "if found_atomic_min(PEELING_TAKEN, PEELING_FRONT, pixel, 0u) == EMPTY {",
         "if found_atomic_min(PEELING_TAKEN, PEELING_FRONT, pixel, 1u) == EMPTY {",
         "any word but EMPTY takes the slot",
