@@ -360,12 +360,6 @@ pub(crate) const OF_SLOTS: &[(&str, &str, &str, &str)] = &[
     ("peeling/ids_on_demand", "id_pairs_find(PEELING_FRONT, pixel, id);", "", SAME_LAYER),
     (
         "peeling/ids_on_demand",
-        "window_store(ID_PAIRS_LEAST, PEELING_FRONT, pixel, found_load(ID_PAIRS_LEAST, PEELING_FRONT, pixel));",
-        "",
-        SAME_LAYER,
-    ),
-    (
-        "peeling/ids_on_demand",
         "window_store(ID_PAIRS_GREATEST, PEELING_FRONT, pixel, EMPTY);",
         "",
         "an iteration more: test `peeling_slots` of the runtime counts iterations",
