@@ -1,7 +1,7 @@
 //! Tests every combination of rows. An accepted combination passes naga and every emitter; a rejected one has a diagnostic with help.
 //! Rows of an axis with equal capabilities and conditions are equivalent under the rules, so one combination per equivalence class is
-//! checked, and for some classes a random one in addition. A covering set also passes glslang, spirv-val and Tint, and a
-//! sample of it with every row glslang's translations to SPIR-V. If naga rejects what the rules accept, fragbuf has a defect.
+//! checked, and for some classes a random one in addition. A covering set also passes glslang, spirv-val and Tint. If naga rejects what
+//! the rules accept, fragbuf has a defect.
 
 mod combinations;
 
@@ -17,7 +17,7 @@ use fragbuf_codegen::{Linking, Profile, link, plan, verify};
 use fragbuf_model::{Alternative, Attribute, Choice, Draft, Format, Keep, KeepCount, Selection, SourceSpan, Spanned};
 
 use crate::cases::{CUSTOM, DEPTH_ONLY, RESERVED, Random, checked, generated, has_empty_list, named, text};
-use crate::validators::{validate, validate_untranslated};
+use crate::validators::validate;
 
 /// Returns the payloads, constraints and closures that every combination is checked with.
 fn descriptions() -> Vec<Draft> {
@@ -77,12 +77,9 @@ fn every_combination_generates_or_is_rejected_with_help() {
         scope.spawn(work);
         scope.spawn(work);
     });
-    let covering = covering(&papers);
-    let (sample, others) = translated(&covering);
-    println!("sample: {} of a covering set of {} through glslang's translations", sample.len(), covering.len());
-    assert!(sample.len() * 10 >= covering.len());
-    let files = |of: &[&Accepted<'_>]| of.iter().flat_map(|one| generated(&one.variant).files).collect::<Vec<File>>();
-    let external = validate(files(&sample).iter()) + validate_untranslated(files(&others).iter());
+    let covering: Vec<File> =
+        covering(&papers).into_iter().flat_map(|accepted| generated(&accepted.variant).files).collect();
+    let external = validate(covering.iter());
     assert!(external > 1000, "{external}");
     println!(
         "product: {} combinations, {} accepted, {} rejected, in {} and {} kinds; {} distinct passes in {} files through \
@@ -243,22 +240,6 @@ fn covering<'a, 'b>(accepted: &[&'b Accepted<'a>]) -> Vec<&'b Accepted<'a>> {
         more
     });
     order
-}
-
-/// Divides a covering set: the sample that glslang also translates to SPIR-V, which costs a process per file, and the others. The sample
-/// has each combination that has a row that those before it lack, so every row, and one in ten of the others.
-fn translated<'a, 'b>(covering: &[&'b Accepted<'a>]) -> (Vec<&'b Accepted<'a>>, Vec<&'b Accepted<'a>>) {
-    let mut rows = BTreeSet::new();
-    let in_sample = |(index, accepted): &(usize, &Accepted<'_>)| {
-        let mut has_new = false;
-        for choice in accepted.choices {
-            has_new |= rows.insert(choice.clone());
-        }
-        has_new || index % 10 == 0
-    };
-    let (sample, others): (Vec<_>, Vec<_>) = covering.iter().copied().enumerate().partition(in_sample);
-    let without_index = |numbered: Vec<(usize, _)>| numbered.into_iter().map(|(_, one)| one).collect();
-    (without_index(sample), without_index(others))
 }
 
 #[test]

@@ -13,26 +13,13 @@ use crate::tint;
 
 /// Validates each distinct file for which there is an external validator. Returns their number. Panics with every error.
 pub fn validate<'a>(files: impl Iterator<Item = &'a File>) -> usize {
-    validate_with(files, &tools)
-}
-
-/// As [`validate`], but without glslang's translations to SPIR-V, each of which costs a process: that is a tenth of a second, where
-/// compiling costs a millisecond. GLSL for OpenGL is only compiled, and GLSL for Vulkan, which cannot be, is left out.
-pub fn validate_untranslated<'a>(files: impl Iterator<Item = &'a File>) -> usize {
-    validate_with(files, &|file| {
-        let is_cheap = |tool: &Tool| ![GLSL_TO_SPIRV, VULKAN].contains(tool);
-        tools(file).into_iter().filter(is_cheap).collect()
-    })
-}
-
-fn validate_with<'a>(files: impl Iterator<Item = &'a File>, tools: &dyn Fn(&File) -> Vec<Tool>) -> usize {
     let files: Vec<&File> = files.collect();
     let mut seen = BTreeSet::new();
     let distinct = files.iter().copied();
     let distinct: Vec<&File> = distinct
         .filter(|file| !tools(file).is_empty() && seen.insert((suffix(file), file.target, &file.bytes)))
         .collect();
-    let batches = batches(&distinct, tools);
+    let batches = batches(&distinct);
     let (queue, diagnostics) = (Mutex::new(batches.iter()), Mutex::new(Vec::new()));
     let work = || {
         while let Some((tool, files)) = { queue.lock().unwrap().next() } {
@@ -82,7 +69,7 @@ fn suffix(file: &File) -> &str {
 }
 
 /// Returns what is not known to be valid, as the files of each process.
-fn batches<'a>(files: &[&'a File], tools: &dyn Fn(&File) -> Vec<Tool>) -> Vec<(Tool, Vec<&'a File>)> {
+fn batches<'a>(files: &[&'a File]) -> Vec<(Tool, Vec<&'a File>)> {
     let mut batches = Vec::new();
     for tool in [GLSL, GLSL_TO_SPIRV, VULKAN, SPIRV] {
         let unknown = files.iter().copied().filter(|file| tools(file).contains(&tool) && !passed(tool, file).exists());
