@@ -34,8 +34,10 @@
 
 pub mod builder;
 mod expanded;
+mod textures;
 
 pub use expanded::{Fragments, UniformValue};
+pub use textures::{Image, Texture2d, Texture3d};
 pub use fragbuf_model::{Diagnostic, Diagnostics, Draft, SourceSpan, Variant, check};
 pub use fragbuf_syntax::{CapturedTokens, Parsed, parse};
 pub use fragbuf_templates::Registry;

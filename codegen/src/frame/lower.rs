@@ -5,9 +5,7 @@
 //! cannot run are rejected here, once for every device: an exchange of two shapes, a loop that waits for a pass that does not exist.
 
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{
-    BindingTime, Element, Formula, Host, Kind, Objects, Pass, Repeat, Setter, Step, Until, Words,
-};
+use fragbuf_templates::vocabulary::{BindingTime, Formula, Host, Kind, Objects, Pass, Repeat, Setter, Step, Until, Words};
 
 use super::{Action, Command, Decision, Loop, LoopId, LoopUntil, LoweredFrame, Parity, PassId, PlannedPass, Range};
 use crate::{PlannedResource, Quantity, ResourceId, SymbolId, SymbolTable};
@@ -231,7 +229,7 @@ impl LoweringContext<'_> {
 
     /// Returns the buffer of a name.
     fn buffer(&self, name: &str) -> Result<ResourceId, String> {
-        let is_texture = |id: &ResourceId| matches!(self.resources[id.0].resource.element, Element::Texture(_));
+        let is_texture = |id: &ResourceId| self.resources[id.0].is_texture();
         match self.resources(name)?.as_slice() {
             [one] if !is_texture(one) => Ok(*one),
             _ => Err(format!("a step reads `{name}`, which is not one buffer")),

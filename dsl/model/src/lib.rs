@@ -11,6 +11,8 @@ mod nearest_name;
 pub mod resumable;
 mod set;
 mod span;
+mod texture;
+mod uniform;
 mod uniform_block;
 mod user_row;
 mod variant;
@@ -19,13 +21,15 @@ pub use check::{MAX_K, check};
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Label, Severity, codes, counted};
 pub use draft::{
     Alternative, Attribute, Choice, Draft, Format, Incomplete, Keep, KeepCount, OptionValue, Reads, Suspicious,
-    Uniform, UniformType, Unused, UserFunction,
+    Unused, UserFunction,
 };
 pub use names::mangled;
 pub use nearest_name::nearest_name;
 pub use resumable::Resumable;
 pub use set::SET;
 pub use span::{SourceSpan, Spanned};
+pub use texture::{Image, Texture, TextureDimension, image_resource};
+pub use uniform::{Uniform, UniformType};
 pub use uniform_block::UniformBlock;
 pub use user_row::{RowSpans, UserRow};
 pub use variant::{AxisChoice, Description, MissingFeature, SelectedRow, Selection, Variant};

@@ -10,6 +10,8 @@ mod external;
 #[cfg(feature = "gpu")]
 mod gpu;
 mod importance;
+mod preintegrated;
+pub(super) mod textures;
 #[cfg(feature = "gpu")]
 mod mesh;
 mod opaque;
@@ -56,7 +58,7 @@ pub(crate) fn render(
     let uniforms = uniforms::values(request.uniforms, &result.plan.variant)?;
     result.warn(request.description, &uniforms, &scene.scene);
     let has_importance =
-        result.plan.resources.iter().any(|planned| planned.is_external() && !planned.is_opaque_depth());
+        result.plan.resources.iter().any(|planned| planned.is_external() && !planned.is_opaque_depth() && !planned.is_of_description());
     if view.importance.is_some() && !has_importance && !view.is_later_frame {
         let help = "choose `--set allocation=by_importance` for a storage that has it, or leave out `--importance`";
         output::warn(&format!("{}: `--importance` changes nothing: {help}", request.description));
