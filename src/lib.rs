@@ -40,7 +40,9 @@ pub mod source_file;
 pub mod user_file;
 
 pub use fragbuf_codegen::{Arrival, Form, GENERATOR, Linking, Plan, Profile, Program, link, plan};
-pub use fragbuf_dsl::{CapturedTokens, Fragments, Image, Texture2d, Texture3d, UniformValue, builder, closure, function, glam};
+pub use fragbuf_dsl::{
+    CapturedTokens, Fragments, Image, Texture2d, Texture3d, UniformValue, builder, closure, function, glam,
+};
 pub use fragbuf_model::{
     Diagnostic, Diagnostics, Draft, Selection, Severity, SourceSpan, Texture, TextureDimension, Variant, check,
 };

@@ -9,12 +9,18 @@ mod chromium;
 #[allow(dead_code, reason = "these tests render with attributes of their own")]
 mod cpu_image;
 mod jobs;
+#[path = "oracle/lookups.rs"]
+mod lookups;
 #[path = "oracle/numbers.rs"]
 mod numbers;
 #[path = "../backends/run/cpu/tests/peeling_loop.rs"]
 mod peeling_loop;
 #[path = "oracle/scene.rs"]
 mod scene;
+/// What `lookups` uses of the hosts' module of this name.
+mod technique {
+    pub const BACKGROUND: [f64; 3] = [0.2, 0.4, 0.6];
+}
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

@@ -59,7 +59,8 @@ fn lookups(name: &str, texture: &Texture, text: &mut String) {
         TextureDimension::D3 => TRILINEAR,
     };
     for (length, component) in ["width", "height", "depth"].iter().zip(["x", "y", "z"]).take(axes) {
-        let _ = writeln!(text, "fn {length}_{name}() -> u32 {{\n    return textureDimensions({name}).{component};\n}}\n");
+        let _ =
+            writeln!(text, "fn {length}_{name}() -> u32 {{\n    return textureDimensions({name}).{component};\n}}\n");
     }
     let (whole, float) = (format!("vec{axes}<i32>"), format!("vec{axes}<f32>"));
     let _ = writeln!(

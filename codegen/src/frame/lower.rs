@@ -5,7 +5,9 @@
 //! cannot run are rejected here, once for every device: an exchange of two shapes, a loop that waits for a pass that does not exist.
 
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{BindingTime, Formula, Host, Kind, Objects, Pass, Repeat, Setter, Step, Until, Words};
+use fragbuf_templates::vocabulary::{
+    BindingTime, Formula, Host, Kind, Objects, Pass, Repeat, Setter, Step, Until, Words,
+};
 
 use super::{Action, Command, Decision, Loop, LoopId, LoopUntil, LoweredFrame, Parity, PassId, PlannedPass, Range};
 use crate::{PlannedResource, Quantity, ResourceId, SymbolId, SymbolTable};

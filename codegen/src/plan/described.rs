@@ -56,7 +56,9 @@ fn reads(variant: &Variant, pass: &Pass) -> Reads {
     let own = pass.constants.iter().find(|(name, _)| name == IMAGE).map(|(_, number)| *number as usize);
     let everywhere = variant.criterion.iter().chain(&variant.constraints).chain(&variant.between);
     let effect: Vec<&UserFunction> = match (&pass.kind, own) {
-        (Kind::Fullscreen, Some(number)) => variant.images.get(number).map(|image| &image.function).into_iter().collect(),
+        (Kind::Fullscreen, Some(number)) => {
+            variant.images.get(number).map(|image| &image.function).into_iter().collect()
+        }
         (Kind::Fullscreen, None) => variant.resolve.iter().collect(),
         _ => Vec::new(),
     };

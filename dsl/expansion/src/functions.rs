@@ -92,7 +92,13 @@ fn signature(role: &Role, source: &ModuleSource) -> Option<FunctionSignature> {
         Role::Constraint(index) => {
             let result = quote! { ::core::primitive::bool };
             let about = "Whether a fragment meets this constraint.";
-            (format_ident!("admit_{index}"), format_ident!("constraint_{index}"), about, vec![fragment("fragment")], result)
+            (
+                format_ident!("admit_{index}"),
+                format_ident!("constraint_{index}"),
+                about,
+                vec![fragment("fragment")],
+                result,
+            )
         }
         Role::Resolve => {
             let about = "The result of a pixel from its kept fragments, in the given order.";
@@ -154,7 +160,8 @@ fn by_value(function: &FunctionTokens, source: &ModuleSource) -> TokenStream {
     let FunctionSignature { inner_name, about, parameters: given, result, .. } = signature;
     let Closure { parameters, body } = Closure::of(&function.tokens);
     let mut names = parameters.into_iter().filter(|name| !name.is_empty()).chain(std::iter::repeat(quote! { _ }));
-    let first = given.iter().map(|parameter| &parameter.by_value).zip(names.by_ref()).map(|(ty, name)| quote! { #name: #ty });
+    let first =
+        given.iter().map(|parameter| &parameter.by_value).zip(names.by_ref()).map(|(ty, name)| quote! { #name: #ty });
     let first: Vec<TokenStream> = first.collect();
     let uniforms = names.next();
     quote! {

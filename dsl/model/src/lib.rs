@@ -20,8 +20,8 @@ mod variant;
 pub use check::{MAX_K, check};
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Label, Severity, codes, counted};
 pub use draft::{
-    Alternative, Attribute, Choice, Draft, Format, Incomplete, Keep, KeepCount, OptionValue, Reads, Suspicious,
-    Unused, UserFunction,
+    Alternative, Attribute, Choice, Draft, Format, Incomplete, Keep, KeepCount, OptionValue, Reads, Suspicious, Unused,
+    UserFunction,
 };
 pub use names::mangled;
 pub use nearest_name::nearest_name;

@@ -18,9 +18,11 @@ use crate::types::{Shape, Type};
 
 /// Returns the draft of a description: checks and lowers all functions.
 pub(crate) fn build(description: RawDescription, report: &mut Report) -> Draft {
-    let RawDescription { name, preset, items } = description;
+    let RawDescription { name, preset, mut items } = description;
+    items.reject_names_twice(report);
     let environment = environment(&items, report);
-    let Items { attributes, uniforms, textures, images, keep, choices, functions, invalid_attributes, effect, .. } = items;
+    let Items { attributes, uniforms, textures, images, keep, choices, functions, invalid_attributes, effect, .. } =
+        items;
     let mut incomplete = items.incomplete;
     let is_effect = |role: &Role| matches!(role, Role::Resolve | Role::Between);
     let of_effect = functions.iter().find(|function| is_effect(&function.role)).map(|function| function.span.clone());

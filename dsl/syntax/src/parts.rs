@@ -3,9 +3,7 @@
 //! Input: [`Parts`], plain data with a span for each part. Output: the same [`Parsed`] as from the source of the same
 //! description: all front ends share the rules, the type checker and the lowering.
 
-use fragbuf_model::{
-    Choice, Format, Incomplete, KeepCount, SourceSpan, Spanned, TextureDimension, UniformType,
-};
+use fragbuf_model::{Choice, Format, Incomplete, KeepCount, SourceSpan, Spanned, TextureDimension, UniformType};
 use proc_macro2::{Span, TokenStream};
 
 use crate::captured_tokens::CapturedTokens;
@@ -151,7 +149,7 @@ impl Assembly {
             Part::Image(name, _) => {
                 let name = names::declared(name, "image", report);
                 let function = closure(tokens, Role::Image(name.value.clone()), report)?;
-                self.items.add_image(name, function, report);
+                self.items.add_image(name, function);
             }
             Part::Helper(_) => {
                 let tokens = bounded(tokens, report)?;

@@ -6,8 +6,8 @@ use std::fmt::Write;
 
 use fragbuf_model::{Format, UniformType};
 
-use crate::methods::{METHODS, Method, MethodType, Spelling, UNSUPPORTED};
 use crate::check::TEXTURE_METHODS;
+use crate::methods::{METHODS, Method, MethodType, Spelling, UNSUPPORTED};
 use crate::types::Type;
 
 /// Returns the types, methods, constants and unsupported constructs as Markdown.

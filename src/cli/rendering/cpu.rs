@@ -11,11 +11,11 @@ use fragbuf_frame::{POOL_EXHAUSTED, PoolSize, Sizing};
 
 use super::external::ExternalTextures;
 use super::importance::Importance;
-use super::textures;
 use super::opaque::{OpaqueScene, depth_texture};
 use super::prepared::FrameTime;
 use super::request::{RedrawState, RenderTask};
 use super::result::{FrameStats, RenderResult};
+use super::textures;
 use crate::cli::attributes::{Geometry, geometry};
 use crate::cli::device::CPU;
 use crate::cli::input::Input;

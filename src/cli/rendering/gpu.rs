@@ -12,12 +12,12 @@ use fragbuf_runtime::{Error, Output, Pipelines, Renderer, Settings, Shaders, blo
 
 use super::external::ExternalTextures;
 use super::importance::Importance;
-use super::textures;
 use super::mesh::Mesh;
 use super::opaque::{OpaqueScene, depth_texture};
 use super::prepared::FrameTime;
 use super::request::{RedrawState, RenderTask};
 use super::result::{FrameStats, RenderResult};
+use super::textures;
 use crate::cli::attributes::geometry;
 use crate::cli::input::Input;
 use crate::cli::output::Failure;

@@ -78,19 +78,13 @@ impl<'a> Source<'a> {
         let mut parts = text.split(',');
         let path = parts.next().unwrap_or_default();
         let option = |part: &'a str| {
-            part.split_once('=').ok_or_else(|| {
-                Failure::Usage(format!("`--texture {name}`: write options as name=value, not `{part}`"))
-            })
+            part.split_once('=')
+                .ok_or_else(|| Failure::Usage(format!("`--texture {name}`: write options as name=value, not `{part}`")))
         };
         Ok(Source { path, options: parts.map(option).collect::<Result<_, _>>()?, is_table })
     }
 
-    fn read(
-        &self,
-        name: &str,
-        dimension: TextureDimension,
-        memory: Budget,
-    ) -> Result<(TextureData, Budget), Failure> {
+    fn read(&self, name: &str, dimension: TextureDimension, memory: Budget) -> Result<(TextureData, Budget), Failure> {
         let usage = |message: String| Failure::Usage(format!("`--texture {name}`: {message}"));
         let image = read_image(self.path.as_ref(), memory)?;
         if self.is_table {

@@ -112,8 +112,12 @@ impl Checked {
                 read_only: !access.intersects(StorageAccess::STORE | StorageAccess::ATOMIC),
                 least_bytes: inner.size(module.to_ctx()),
             }),
-            (_, TypeInner::Image { dim: ImageDimension::D2, arrayed: false, class }) => image(*class, TextureDimension::D2),
-            (_, TypeInner::Image { dim: ImageDimension::D3, arrayed: false, class }) => image(*class, TextureDimension::D3),
+            (_, TypeInner::Image { dim: ImageDimension::D2, arrayed: false, class }) => {
+                image(*class, TextureDimension::D2)
+            }
+            (_, TypeInner::Image { dim: ImageDimension::D3, arrayed: false, class }) => {
+                image(*class, TextureDimension::D3)
+            }
             _ => None,
         }
     }

@@ -62,7 +62,13 @@ impl<'a> BoundTexture<'a> {
     /// Binds a texture of the description.
     pub(crate) fn described(texture: &'a DescribedTexture) -> Self {
         let [width, height, slices] = texture.size;
-        BoundTexture { words: &texture.words, texel: Texel::Output, is_integer: false, size: (width, height), samples: slices }
+        BoundTexture {
+            words: &texture.words,
+            texel: Texel::Output,
+            is_integer: false,
+            size: (width, height),
+            samples: slices,
+        }
     }
 
     /// Returns the texel at a column, a row, and a sample, a slice or the only level. `None`: out of bounds.

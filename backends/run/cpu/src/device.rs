@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use fragbuf_codegen::Plan;
 use fragbuf_frame::{
-    LaggedValues, MemoryLimits, described_texture, Readbacks, Value, Values, initial_values, pool_size_after, resource, set_uniform,
-    unsupported, zero_uniforms,
+    LaggedValues, MemoryLimits, Readbacks, Value, Values, described_texture, initial_values, pool_size_after, resource,
+    set_uniform, unsupported, zero_uniforms,
 };
 use fragbuf_templates::vocabulary::{Element, TextureFormat};
 
@@ -56,8 +56,20 @@ impl Device {
         let missing = resources.filter(|(_, planned)| planned.is_external()).map(|(index, _)| index).collect();
         let (camera, objects, textures) = (Vec::new(), Vec::new(), BTreeMap::new());
         let lag = LaggedValues::new(&code.plan, settings.decisions);
-        let mut device =
-            Device { code, settings, values, limits, readbacks, lag, memory, uniforms, camera, objects, textures, missing };
+        let mut device = Device {
+            code,
+            settings,
+            values,
+            limits,
+            readbacks,
+            lag,
+            memory,
+            uniforms,
+            camera,
+            objects,
+            textures,
+            missing,
+        };
         device.set_camera(&IDENTITY);
         Ok(device)
     }
@@ -110,7 +122,8 @@ impl Device {
         let number = described_texture(&self.code.plan, name, size)?;
         let count = size.iter().map(|length| u64::from(*length)).product::<u64>();
         if texels.len() as u64 != count {
-            let expected = format!("of {count} texels, {} x {} x {}, but has {}", size[0], size[1], size[2], texels.len());
+            let expected =
+                format!("of {count} texels, {} x {} x {}, but has {}", size[0], size[1], size[2], texels.len());
             return Err(fragbuf_frame::Error::BadValue { name: format!("the texture `{name}`"), expected }.into());
         }
         let bytes = count.saturating_mul(size_of::<[f32; 4]>() as u64);

@@ -21,7 +21,9 @@ pub fn described_texture(plan: &Plan, name: &str, size: [u32; 3]) -> Result<Reso
     };
     let [width, height, slices] = size;
     if size.iter().any(|length| !(1..=MAX_TEXTURE_SIDE).contains(length)) {
-        return Err(bad(format!("of 1 to {MAX_TEXTURE_SIDE} texels along each side, but has {width} x {height} x {slices}")));
+        return Err(bad(format!(
+            "of 1 to {MAX_TEXTURE_SIDE} texels along each side, but has {width} x {height} x {slices}"
+        )));
     }
     if texture.dimension.value == TextureDimension::D2 && slices != 1 {
         return Err(bad(format!("of two dimensions, but has {slices} slices")));

@@ -70,7 +70,9 @@ impl MemoryLimits {
         if requested.is_some_and(|rows| rows < height) {
             return Err(Error::BadValue {
                 name: "the rows of a slice".to_owned(),
-                expected: format!("{height}, those of the frame: closures read images of the description at other pixels"),
+                expected: format!(
+                    "{height}, those of the frame: closures read images of the description at other pixels"
+                ),
             });
         }
         self.check(plan, values, self.per_slice)?;

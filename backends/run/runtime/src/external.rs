@@ -57,8 +57,7 @@ fn accept_described(name: &str, dimension: TextureDimension, texture: &wgpu::Tex
         TextureDimension::D2 => (wgpu::TextureDimension::D2, "two dimensions, one layer"),
         TextureDimension::D3 => (wgpu::TextureDimension::D3, "three dimensions"),
     };
-    let is_float =
-        matches!(texture.format().sample_type(None, None), Some(wgpu::TextureSampleType::Float { .. }));
+    let is_float = matches!(texture.format().sample_type(None, None), Some(wgpu::TextureSampleType::Float { .. }));
     let layers = texture.size().depth_or_array_layers;
     let has_shape = texture.dimension() == expected && (dimension == TextureDimension::D3 || layers == 1);
     let is_plain = texture.mip_level_count() == 1 && texture.sample_count() == 1;

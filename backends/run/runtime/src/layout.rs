@@ -102,11 +102,7 @@ fn entry(number: u32, binding: Binding, main: wgpu::ShaderStages) -> wgpu::BindG
     let (visibility, ty) = match binding {
         Binding::Texture { sample_type, dimension, samples, .. } => {
             let multisampled = samples == Samples::Several;
-            let ty = wgpu::BindingType::Texture {
-                sample_type,
-                view_dimension: dimension,
-                multisampled,
-            };
+            let ty = wgpu::BindingType::Texture { sample_type, view_dimension: dimension, multisampled };
             return wgpu::BindGroupLayoutEntry { binding: number, visibility: main, ty, count: None };
         }
         Binding::Unused => (wgpu::ShaderStages::NONE, wgpu::BufferBindingType::Uniform),

@@ -34,6 +34,7 @@ mod invariance;
 mod lagged;
 mod larger;
 mod limits;
+mod lookups;
 mod losses;
 mod lowered;
 mod manifests;

@@ -9,6 +9,7 @@ mod drivers;
 #[path = "../../../../tests/oracle/hosts.rs"]
 mod hosts;
 mod interlock;
+mod lookups;
 mod misuse;
 mod peeling;
 mod pixels;

@@ -336,7 +336,8 @@ impl Context<'_> {
         indices.sort_by_key(|index| (self.extent_of_change(&self.choices[*index].axis), *index != at_fault));
         for index in indices {
             let axis = &self.choices[index].axis;
-            let has_closure = axis == Registry::CLOSURE_AXIS && (self.draft.resolve.is_some() || self.draft.between.is_some());
+            let has_closure =
+                axis == Registry::CLOSURE_AXIS && (self.draft.resolve.is_some() || self.draft.between.is_some());
             for row in self.registry.rows_of(axis) {
                 let mut other = combination.clone();
                 other[index] = row;

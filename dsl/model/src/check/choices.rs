@@ -118,7 +118,9 @@ fn has_option(row: &Row, name: &str) -> bool {
 
 /// Reports an effect that is given both as a closure and by name.
 fn closure_and_effect(draft: &Draft, choice: &Choice, diagnostics: &mut Diagnostics) {
-    if let Some(closure) = draft.resolve.as_ref().or(draft.between.as_ref()).filter(|_| choice.axis.value == Registry::CLOSURE_AXIS) {
+    if let Some(closure) =
+        draft.resolve.as_ref().or(draft.between.as_ref()).filter(|_| choice.axis.value == Registry::CLOSURE_AXIS)
+    {
         diagnostics.push(
             Diagnostic::new(
                 codes::DUPLICATE,
@@ -249,8 +251,11 @@ fn selected_row(
             ));
             return None;
         }
-        let known: Vec<&str> =
-            registry.rows_of(&axis.value).filter(|row| !Registry::is_of_closures(row)).map(|row| row.key.as_str()).collect();
+        let known: Vec<&str> = registry
+            .rows_of(&axis.value)
+            .filter(|row| !Registry::is_of_closures(row))
+            .map(|row| row.key.as_str())
+            .collect();
         diagnostics.push(Diagnostic::new(
             codes::UNKNOWN_VALUE,
             &value.span,

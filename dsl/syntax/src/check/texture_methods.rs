@@ -119,7 +119,8 @@ fn instead(name: &str, shape: Shape) -> String {
         "size" | "dimensions" => "width",
         _ => name,
     };
-    let other = if shape == Shape::Image && ["load", "sample", "sample_nearest"].contains(&other) { "at" } else { other };
+    let other =
+        if shape == Shape::Image && ["load", "sample", "sample_nearest"].contains(&other) { "at" } else { other };
     match of_shape(other).filter(|_| other != name) {
         Some(method) => format!("write `{}`", method.signature()),
         None => unknown_name::help(name, &known),
