@@ -64,7 +64,7 @@ pub(super) fn render(
     let memory = importance.as_ref().map_or(memory, |importance| importance.memory);
     let (textures, memory) = textures::read(variant, &view.textures, memory)?;
     let memory = memory.left();
-    let uniforms = uniforms::values(request.uniforms, variant)?;
+    let uniforms = uniforms::values(request.uniforms, variant, scene)?;
     let (width, height) = view.size;
     loop {
         let sizing =
