@@ -55,6 +55,7 @@ mod render;
 mod site;
 mod snapshots;
 mod suggestions;
+mod textures;
 mod tidy;
 mod tint;
 mod user_files;

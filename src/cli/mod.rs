@@ -54,6 +54,8 @@ mod progress_line;
 #[cfg(feature = "pictures")]
 mod render;
 #[cfg(feature = "pictures")]
+mod rendered_texture;
+#[cfg(feature = "pictures")]
 mod rendering;
 mod show;
 #[cfg(feature = "playground")]

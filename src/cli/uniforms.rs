@@ -1,4 +1,4 @@
-//! Parses `--uniform name=value[,value…]`, `name=camera` and `name=direction`: values of a description's uniforms. The default is 0.
+//! Parses `--uniform name=value[,value…]`, `name=camera`, `name=direction` and `name=texture.part`: values of a description's uniforms. The default is 0.
 //!
 //! Input: names and texts, the description, and the view that it is drawn with. Output: values, or a message with the types and names that the
 //! description declares.
@@ -26,6 +26,7 @@ pub(crate) fn values(
         let value = match parse(name, text, variant)? {
             Given::Value(value) => value,
             Given::Viewpoint(viewpoint) => Value::Vec3(viewpoint.value(name, view)?),
+            Given::Texture(texture) => texture.value(name, view)?,
         };
         Ok((name.clone(), value))
     };
@@ -36,6 +37,57 @@ pub(crate) fn values(
 enum Given {
     Value(Value),
     Viewpoint(Viewpoint),
+    Texture(TextureCamera),
+}
+
+/// A value of the camera of a texture that another description draws: `shadow.camera`, its position, and `shadow.x`, `.y`, `.z` and `.w`, the rows of
+/// its matrix from the coordinates of the model to clip space.
+struct TextureCamera {
+    texture: String,
+    part: &'static str,
+}
+
+/// The parts of such a camera, and their types.
+const CAMERA_PARTS: [(&str, UniformType); 5] = [
+    ("camera", UniformType::Vec3),
+    ("x", UniformType::Vec4),
+    ("y", UniformType::Vec4),
+    ("z", UniformType::Vec4),
+    ("w", UniformType::Vec4),
+];
+
+impl TextureCamera {
+    fn value(&self, uniform: &str, view: &SceneView) -> Result<Value, Failure> {
+        let TextureCamera { texture, part } = self;
+        let camera = view.texture_cameras.iter().find(|(name, _)| name == texture).map(|(_, camera)| camera);
+        let camera = camera.ok_or_else(|| {
+            Failure::Usage(format!(
+                "uniform `{uniform}`: no description draws the texture `{texture}`: write `--texture {texture}=rendered:FILE,camera=…`"
+            ))
+        })?;
+        let placement = view.scene.placement;
+        let Some(row) = ["x", "y", "z", "w"].iter().position(|name| name == part) else {
+            return match camera.eye {
+                Eye::At(eye) => Ok(Value::Vec3(placement.model_position(eye))),
+                Eye::Along(_) => Err(Failure::Usage(format!(
+                    "uniform `{uniform}` has no value: the camera of the texture `{texture}` is infinitely far away"
+                ))),
+            };
+        };
+        // A position of the model is `origin + unit * position`.
+        let [x, y, z, w]: [f64; 4] = std::array::from_fn(|column| f64::from(camera.view_projection[4 * column + row]));
+        let scaled = [x, y, z].map(|value| value / placement.unit);
+        let moved: f64 = scaled.iter().zip(placement.origin).map(|(value, origin)| value * origin).sum();
+        Ok(Value::Vec4([scaled[0], scaled[1], scaled[2], w - moved].map(|value| value as f32)))
+    }
+}
+
+/// Returns the part of a texture's camera that a text names.
+fn texture_camera(text: &str, variant: &Variant) -> Option<(TextureCamera, UniformType)> {
+    let (texture, part) = text.split_once('.')?;
+    let is_texture = variant.textures.iter().any(|known| known.name.value == texture);
+    let (part, kind) = CAMERA_PARTS.into_iter().find(|(known, _)| *known == part && is_texture)?;
+    Some((TextureCamera { texture: texture.to_owned(), part }, kind))
 }
 
 /// A value of the view, by its name.
@@ -73,6 +125,10 @@ fn parse(name: &str, text: &str, variant: &Variant) -> Result<Given, Failure> {
     let viewpoint = VIEWPOINTS.iter().find(|(word, _)| *word == text);
     if let Some((_, viewpoint)) = viewpoint.filter(|_| kind == UniformType::Vec3) {
         return Ok(Given::Viewpoint(*viewpoint));
+    }
+    if let Some((camera, wanted)) = texture_camera(text, variant) {
+        let message = format!("`{text}` is the value of a {0}: declare `{name}: {0}`", wanted.keyword());
+        return if kind == wanted { Ok(Given::Texture(camera)) } else { Err(Failure::Usage(message)) };
     }
     let words = VIEWPOINTS.map(|(word, _)| word);
     let help = match (viewpoint, nearest_name(text, &words)) {

@@ -16,6 +16,7 @@ use super::device::{self, DeviceRequest};
 use super::memory::{self, Budget};
 use super::output::{self, Failure};
 use super::picture;
+use super::rendered_texture::RenderedTexture;
 
 #[derive(Clone, clap::Args)]
 pub(crate) struct View {
@@ -30,7 +31,8 @@ pub(crate) struct View {
     #[arg(long, value_name = "PNG")]
     pub(crate) importance: Option<PathBuf>,
     /// Texture of the description: a PNG, with `,slices=N` for three dimensions (slices one below the other), or
-    /// `preintegrated:PNG,length=L,extinction=E`, the table of a transfer function for ray segments. Channels are read as stored, from 0 to 1
+    /// `preintegrated:PNG,length=L,extinction=E`, the table of a transfer function for ray segments, or
+    /// `rendered:DESCRIPTION,camera=CAMERA,size=WxH`, what another description draws of the scene, as floats. Channels are read as stored, from 0 to 1
     #[arg(long = "texture", value_name = "NAME=PNG[,slices=N]", value_parser = texture)]
     pub(crate) textures: Vec<(String, String)>,
     /// Size of the image in pixels
@@ -128,12 +130,14 @@ pub(crate) struct SceneView {
     pub(crate) batch: Option<NonZeroU32>,
     /// The disorder of its fragments, if the arrangement of triangles is not that of the model and their memory suffices.
     pub(crate) disorder: Option<Disorder>,
+    /// The cameras of textures that other descriptions draw, by the names of the textures.
+    pub(crate) texture_cameras: Vec<(String, Camera)>,
 }
 
 impl SceneView {
     /// Returns the view of a scene as it is modelled.
     pub(crate) fn new(scene: Scene, camera: Camera) -> Self {
-        SceneView { scene, camera, is_unlit: true, batch: None, disorder: None }
+        SceneView { scene, camera, is_unlit: true, batch: None, disorder: None, texture_cameras: Vec::new() }
     }
 }
 
@@ -177,7 +181,9 @@ impl View {
         let mut scene = self.open(&self.scene, attributes, self.memory)?;
         let Some(opaque) = &self.opaque else {
             let camera = self.camera(&[&scene])?;
-            return Ok((self.arranged(self.scene_view(scene, camera), self.memory)?, None));
+            let cameras = self.texture_cameras(&[&scene])?;
+            let scene = SceneView { texture_cameras: cameras, ..self.scene_view(scene, camera) };
+            return Ok((self.arranged(scene, self.memory)?, None));
         };
         let rest = self.memory.without(scene.bytes(), "the scene")?;
         let mut opaque = self.open(opaque, &[], rest)?;
@@ -185,9 +191,21 @@ impl View {
         let colors = opaque.objects.iter_mut().flat_map(|object| &mut object.colors);
         colors.for_each(|[_, _, _, alpha]| *alpha = 1.0);
         let camera = self.camera(&[&scene, &opaque])?;
+        let texture_cameras = self.texture_cameras(&[&scene, &opaque])?;
         let opaque = self.scene_view(opaque, camera);
         let rest = self.memory.without(opaque.scene.bytes(), "the opaque scene")?;
-        Ok((self.arranged(self.scene_view(scene, camera), rest)?, Some(opaque)))
+        let scene = SceneView { texture_cameras, ..self.scene_view(scene, camera) };
+        Ok((self.arranged(scene, rest)?, Some(opaque)))
+    }
+
+    /// Places the cameras of textures that other descriptions draw.
+    fn texture_cameras(&self, scenes: &[&Scene]) -> Result<Vec<(String, Camera)>, Failure> {
+        let place = |texture: RenderedTexture| {
+            let camera = texture.camera.place(scenes, texture.size.0 as f32 / texture.size.1 as f32);
+            let camera = camera.map_err(|error| Failure::Usage(format!("`--texture {}`: {error}", texture.name)))?;
+            Ok((texture.name, camera))
+        };
+        RenderedTexture::all(self)?.into_iter().map(place).collect()
     }
 
     /// Arranges the triangles of a scene, and prints the disorder of its fragments.
@@ -234,7 +252,8 @@ impl View {
         let scenes = std::iter::once(&self.scene).chain(&self.opaque);
         let models = scenes.filter(|scene| !scene.starts_with("builtin:")).map(PathBuf::from);
         let textures = self.textures.iter().map(|(_, source)| {
-            let path = source.strip_prefix("preintegrated:").unwrap_or(source);
+            let path = ["preintegrated:", "rendered:"].iter().find_map(|prefix| source.strip_prefix(prefix));
+            let path = path.unwrap_or(source);
             PathBuf::from(path.split(',').next().unwrap_or_default())
         });
         models.chain(self.importance.clone()).chain(textures)

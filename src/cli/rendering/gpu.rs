@@ -168,7 +168,7 @@ impl GpuRenderer {
         let importance = importance.map(|path| Importance::read(path, view.size, memory)).transpose()?;
         let memory = importance.as_ref().map_or(memory, |importance| importance.memory);
         let importance = importance.map(|importance| importance.upload(device, queue, view.size));
-        let (textures, memory) = textures::read(variant, &view.textures, memory)?;
+        let (textures, memory) = textures::read(task, memory)?;
         let textures = textures::upload(variant, &textures, device, queue)?;
         let memory = memory.left();
         drop(geometry);

@@ -16,6 +16,7 @@ mod opaque;
 mod precision;
 mod preintegrated;
 mod prepared;
+mod rendered;
 mod request;
 mod result;
 mod selection;

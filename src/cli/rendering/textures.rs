@@ -9,10 +9,12 @@ use fragbuf_model::nearest_name;
 #[cfg(feature = "gpu")]
 use fragbuf_runtime::wgpu;
 
-use super::preintegrated;
+use super::request::RenderTask;
+use super::{preintegrated, rendered};
 use crate::cli::image_file::{ImageFile, read_image};
 use crate::cli::memory::Budget;
 use crate::cli::output::Failure;
+use crate::cli::rendered_texture::RenderedTexture;
 
 /// The texels of a texture of a description.
 pub(super) struct TextureData {
@@ -25,11 +27,8 @@ pub(super) struct TextureData {
 }
 
 /// Returns the textures of a description, and the memory that is left beside them.
-pub(super) fn read(
-    variant: &Variant,
-    given: &[(String, String)],
-    mut memory: Budget,
-) -> Result<(Vec<TextureData>, Budget), Failure> {
+pub(super) fn read(task: &RenderTask<'_>, mut memory: Budget) -> Result<(Vec<TextureData>, Budget), Failure> {
+    let (variant, given) = (task.variant, &task.view.textures);
     let mut textures = Vec::new();
     for texture in &variant.textures {
         let name = &texture.name.value;
@@ -41,12 +40,36 @@ pub(super) fn read(
             let message = format!("the description reads the texture `{name}`: add `--texture {name}={example}`");
             return Err(Failure::Usage(message));
         };
+        if let Some(rendered) = RenderedTexture::parse(name, source) {
+            let (data, rest) = rendered_data(&rendered?, texture.dimension.value, task, memory)?;
+            memory = rest;
+            textures.push(data);
+            continue;
+        }
         let source = Source::parse(name, source)?;
         let (data, rest) = source.read(name, texture.dimension.value, memory)?;
         memory = rest;
         textures.push(data);
     }
     Ok((textures, memory))
+}
+
+/// Draws a texture by another description.
+fn rendered_data(
+    rendered: &RenderedTexture,
+    dimension: TextureDimension,
+    task: &RenderTask<'_>,
+    memory: Budget,
+) -> Result<(TextureData, Budget), Failure> {
+    let (name, (width, height)) = (&rendered.name, rendered.size);
+    if dimension != TextureDimension::D2 {
+        return Err(Failure::Usage(format!("`--texture {name}`: a picture has two dimensions: declare `{name}: 2d`")));
+    }
+    // The picture, and the texture of a device.
+    let bytes = u64::from(width) * u64::from(height) * 2 * size_of::<[f32; 4]>() as u64;
+    let memory = memory.without(bytes, "the texture that another description draws")?;
+    let texels = rendered::draw(rendered, task, memory)?;
+    Ok((TextureData { name: name.clone(), size: [width, height, 1], texels }, memory))
 }
 
 /// Rejects textures that none of the descriptions declares.

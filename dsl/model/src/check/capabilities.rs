@@ -344,6 +344,10 @@ impl Context<'_> {
                 if !Rules::new(&other, self.given).is_legal() {
                     continue;
                 }
+                // Other rows of closures are for other items.
+                if Registry::is_of_closures(row) && row.key != Registry::CLOSURE {
+                    continue;
+                }
                 match (Registry::is_of_closures(row), has_closure) {
                     (false, false) => fixes.push(name(row)),
                     (false, true) => fixes.push(format!("{} in place of the closure", name(row))),
