@@ -24,6 +24,8 @@ mod device;
 #[cfg(feature = "pictures")]
 mod devices;
 mod earlier;
+#[cfg(feature = "pictures")]
+mod effects;
 mod explain;
 #[cfg(feature = "figures")]
 mod figure;
@@ -69,6 +71,7 @@ mod usage;
 mod view;
 mod watch;
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
@@ -134,7 +137,10 @@ enum Command {
 }
 
 pub(crate) fn run() -> ExitCode {
-    let arguments = Arguments::try_parse().unwrap_or_else(|error| {
+    let words = std::env::args_os().collect();
+    #[cfg(feature = "pictures")]
+    let words = effects::with_arguments(words);
+    let arguments = Arguments::try_parse_from::<Vec<OsString>, _>(words).unwrap_or_else(|error| {
         let given: Vec<String> = std::env::args().collect();
         usage::explained(error, &given, &Arguments::command()).exit()
     });

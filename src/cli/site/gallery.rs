@@ -3,9 +3,12 @@
 //! Input: the techniques of the site. Output: commands as a user writes them, and the pictures that they draw. The command that is shown is
 //! the one that runs, on the CPU device, so that no picture depends on a driver.
 
+use std::ffi::OsString;
+
 use clap::{Args as _, Command as Parser, FromArgMatches as _};
 
 use super::Entry;
+use crate::cli::effects;
 use crate::cli::output::Failure;
 use crate::cli::playground::example;
 use crate::cli::render::Render;
@@ -104,7 +107,8 @@ impl Command {
     /// Parses the command. An example is read from this program.
     fn parsed(&self) -> Result<Render, Failure> {
         let words: Vec<&str> = self.text.split_whitespace().skip(1).collect();
-        let matches = Render::augment_args(Parser::new("render")).try_get_matches_from(&words);
+        let all = effects::with_arguments(words.iter().map(OsString::from).collect());
+        let matches = Render::augment_args(Parser::new("render")).try_get_matches_from(all);
         let render = matches.and_then(|matches| Render::from_arg_matches(&matches));
         let render = render.map_err(|error| Failure::Usage(format!("`{}`: {error}", self.text)))?;
         let file = words.get(1).and_then(|word| word.strip_prefix("examples/")?.strip_suffix(".fragbuf"));
