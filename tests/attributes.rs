@@ -101,7 +101,7 @@ fn attributes_that_are_missing_are_errors() {
     let text = std::fs::read_to_string(HEAT[0]).unwrap();
     std::fs::write(&description, text.replace("heat", "haet")).unwrap();
     let haet = description.to_str().unwrap();
-    let every = "color or colour (rgba8, rgba16, vec4, vec3), alpha (f32), normal (octahedral, vec3), id or object (u32), and depth";
+    let every = "color or colour (rgba8, rgba16, vec4, vec3), alpha (f32), normal (octahedral, vec3), position (vec3), id or object (u32), depth (f32), and front (u32)";
     let advice = "`--attribute haet=0.5` sets a value for every vertex";
     assert_eq!(
         refused("render", &[haet, "--scene", "examples/heat.ply"]),
@@ -141,7 +141,7 @@ fn attributes_that_are_missing_are_errors() {
 fn invalid_values_of_attributes_are_errors() {
     let cases = [
         ("haet=1", "no attribute `haet` to set: did you mean `heat`? it has heat"),
-        ("depth=1", "no attribute `depth` to set: it has heat"),
+        ("depth=1", "the attribute `depth` comes from the rasteriser and cannot be set"),
         ("heat=nan", "attribute `heat: f32` takes one number, not `nan`"),
         ("heat=flow", "not `flow`; for the attribute `flow` of the scene, name it so in the description: `flow: f32`"),
         ("heat=1,2", "attribute `heat: f32` takes one number, not `1,2`"),
@@ -220,4 +220,61 @@ fn compare_has_uniforms_of_each_description() {
             refused("compare", &[&[scaled, "kb", "--scene", "examples/heat.ply"], arguments].concat());
         assert!(code == Some(2) && message.contains(text), "{arguments:?}: {message}");
     }
+}
+
+/// Both sides of a triangle alternate along a ray through a closed body, and the camera is as far away as it was placed.
+#[test]
+fn sides_positions_and_the_camera_are_values_of_fragments() {
+    let folder = folder("sides");
+    let description = folder.join("s.fragbuf");
+    let text = "buffer S from kplus_array {
+        fragment { depth: f32, front: u32, position: vec3 }
+        uniform { eye: vec3, towards: vec3 }
+        keep 8 least |f| f.depth;
+        resolve |fragments, u| {
+            let offset = fragments[0].position - u.eye;
+            let mut alternate = 1.0;
+            let mut expected = 1;
+            for f in fragments { if f.front != expected { alternate = 0.0; } expected = 1 - expected; }
+            vec4(alternate, 0.01 * offset.length(), u.towards.z, 1.0)
+        }
+    }";
+    std::fs::write(&description, text).unwrap();
+    // A closed box, far from zero, so that its scene has other coordinates than the model.
+    let model = folder.join("box.obj");
+    let corner = |at: usize| format!("v {} {} {}\n", 1e5 + (at & 1) as f64, (at >> 1 & 1), -1e5 + (at >> 2) as f64);
+    let faces = "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+    std::fs::write(&model, format!("{}{faces}", (0..8).map(corner).collect::<String>())).unwrap();
+    let out = folder.join("o.png");
+    for device in ["cpu", "llvmpipe"] {
+        let arguments =
+            ["render", description.to_str().unwrap(), "--scene", model.to_str().unwrap(), "--device", device];
+        let uniforms = ["--uniform", "eye=camera", "--uniform", "towards=direction", "--size", "9x9", "--linear"];
+        // In front of the near face, at a distance of 50.
+        let camera = ["--camera", "eye:100000.5,0.5,-99949,fov:3", "--out", out.to_str().unwrap()];
+        let output = fragbuf(&[&arguments[..], &uniforms, &camera].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let pixels = read(&out).2;
+        let [red, green, blue, _] = pixels[9 * 4 + 4];
+        assert_eq!((red, blue), (255, 255), "{device}");
+        assert!(green.abs_diff(128) <= 1, "{device}: {green}");
+        assert!(pixels.iter().all(|[red, ..]| *red == 255), "{device}: {pixels:?}");
+    }
+    let run = |arguments: &[&str]| {
+        let common = [description.to_str().unwrap(), "--scene", "builtin:cubes"];
+        refused("render", &[&common, arguments].concat())
+    };
+    let (code, message) = run(&["--attribute", "front=1"]);
+    assert_eq!(code, Some(2));
+    assert!(message.contains("`front` comes from the rasteriser and cannot be set"), "{message}");
+    let (code, message) = run(&["--uniform", "eye=camera", "--uniform", "towards=0,0,1"]);
+    assert_eq!(code, Some(2));
+    assert!(message.contains("write `--uniform eye=direction`"), "{message}");
+    let (code, message) = run(&["--uniform", "eye=camra"]);
+    assert_eq!(code, Some(2));
+    assert!(message.contains("or `camera` or `direction`, not `camra`; did you mean `camera`?"), "{message}");
+    let refused =
+        refused("render", &["examples/most_visible.fragbuf", "--scene", "builtin:cubes", "--uniform", "far=camera"]);
+    assert_eq!(refused.0, Some(2));
+    assert!(refused.1.contains("declare `far: vec3`"), "{}", refused.1);
 }

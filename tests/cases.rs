@@ -76,6 +76,21 @@ buffer Reserved from ab_ll {
     where |f, u| f.sample + f.buffer + f.mix > u.texture && f.main + f.key != u.discard;
 }";
 
+/// A description of where fragments are, and which side of a triangle is visible.
+pub const SIDES: &str = "
+buffer Sides from kplus_array {
+    fragment { depth: f32, front: u32, position: vec3 }
+    uniform { eye: vec3 }
+    resolve |fragments, u| {
+        let mut thickness = 0.0;
+        for f in fragments {
+            let distance = (f.position - u.eye).length();
+            if f.front == 1 { thickness -= distance; } else { thickness += distance; }
+        }
+        vec4(thickness, thickness, thickness, 1.0)
+    }
+}";
+
 /// Name, description, and values set on it.
 pub type Case = (&'static str, Description, Vec<(&'static str, &'static str)>);
 
@@ -171,6 +186,7 @@ fn written() -> Vec<Case> {
         ("opaque_early", technique("mdt32_coplanar"), vec![("opaque", "early_depth else in_shader")]),
         ("custom", text(CUSTOM), vec![]),
         ("depth_only", text(DEPTH_ONLY), vec![]),
+        ("sides", text(SIDES), vec![]),
         ("reserved", text(RESERVED), vec![]),
         ("statistics", technique("kplus_array"), vec![("counters", "all"), ("cull", "none"), ("k", "1")]),
         (

@@ -1,6 +1,6 @@
 //! The memory layout of a fragment: the members of `Fragment`, and the words of an entry, key first.
 
-use fragbuf_model::{Attribute, Format, Selection, Variant, mangled};
+use fragbuf_model::{Attribute, AttributeSource, Format, Selection, Variant, mangled};
 use fragbuf_templates::vocabulary::TieBreak;
 
 /// The members of a fragment and the words of an entry.
@@ -39,6 +39,8 @@ pub struct Member {
 pub enum MemberSource {
     /// The rasterised depth.
     Depth,
+    /// 1 for the front side of a triangle, 0 for its back side.
+    FrontFacing,
     /// A vertex input.
     Vertex,
     /// A WGSL built-in of fragment shaders, of type `u32`.
@@ -97,7 +99,11 @@ impl Layout {
 }
 
 fn member(attribute: &Attribute) -> Member {
-    let source = if attribute.name.value == "depth" { MemberSource::Depth } else { MemberSource::Vertex };
+    let source = match attribute.source() {
+        AttributeSource::Depth => MemberSource::Depth,
+        AttributeSource::FrontFacing => MemberSource::FrontFacing,
+        AttributeSource::Vertex => MemberSource::Vertex,
+    };
     Member { name: mangled(&attribute.name.value).into_owned(), format: attribute.format.value, source }
 }
 

@@ -95,7 +95,7 @@ fn block(name: &str, summary: &str, binding: u32, fields: &[(String, UniformType
 fn vertex(plan: &Plan, text: &mut String) {
     text.push_str("\n        /// Locations of the inputs of geometry passes.\n        pub mod vertex {\n");
     text.push_str("            /// vec3<f32>\n            pub const POSITION: u32 = 0;\n");
-    let inputs = plan.variant.attributes.iter().filter(|attribute| attribute.name.value != "depth");
+    let inputs = plan.variant.attributes.iter().filter(|attribute| attribute.is_vertex_input());
     let mut names = Names::with("POSITION");
     for (location, attribute) in (1..).zip(inputs) {
         let name = names.fresh(attribute.name.value.to_ascii_uppercase());

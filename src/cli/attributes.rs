@@ -24,7 +24,17 @@ pub(crate) struct Geometry {
 }
 
 /// A function that returns the words of one attribute of a vertex.
-type ReadWords = fn(object: &Object, id: u32, vertex: usize) -> [u32; 4];
+type ReadWords = fn(vertex: &SceneVertex<'_>) -> [u32; 4];
+
+/// A vertex of a scene.
+struct SceneVertex<'a> {
+    scene: &'a Scene,
+    object: &'a Object,
+    /// The number of its object.
+    id: u32,
+    /// Its index in the object.
+    index: usize,
+}
 
 /// Data of every scene.
 struct SceneData {
@@ -42,32 +52,39 @@ struct SceneData {
     is_color: bool,
 }
 
-const SCENE_DATA: [SceneData; 4] = [
+const SCENE_DATA: [SceneData; 5] = [
     SceneData {
         names: &["color", "colour"],
         formats: &[Format::Rgba8, Format::Rgba16, Format::Vec4, Format::Vec3],
-        read: |object, _, vertex| bits(&object.colors, vertex),
+        read: |vertex| bits(&vertex.object.colors, vertex.index),
         is_default: false,
         is_color: true,
     },
     SceneData {
         names: &["alpha"],
         formats: &[Format::F32],
-        read: |object, _, vertex| [bits(&object.colors, vertex)[3], 0, 0, 0],
+        read: |vertex| [bits(&vertex.object.colors, vertex.index)[3], 0, 0, 0],
         is_default: false,
         is_color: false,
     },
     SceneData {
         names: &["normal"],
         formats: &[Format::Octahedral, Format::Vec3],
-        read: |object, _, vertex| bits(&object.normals, vertex),
+        read: |vertex| bits(&vertex.object.normals, vertex.index),
         is_default: false,
+        is_color: false,
+    },
+    SceneData {
+        names: &["position"],
+        formats: &[Format::Vec3],
+        read: |vertex| model_position(vertex),
+        is_default: true,
         is_color: false,
     },
     SceneData {
         names: &["id", "object"],
         formats: &[Format::U32],
-        read: |_, id, _| [id, 0, 0, 0],
+        read: |vertex| [vertex.id, 0, 0, 0],
         is_default: true,
         is_color: false,
     },
@@ -75,12 +92,12 @@ const SCENE_DATA: [SceneData; 4] = [
 
 /// Returns the data of every scene with this name.
 fn scene_row(name: &str) -> Option<&'static SceneData> {
-    static ROWS: [SceneData; 4] = SCENE_DATA;
+    static ROWS: [SceneData; 5] = SCENE_DATA;
     ROWS.iter().find(|row| row.names.contains(&name))
 }
 
-/// The attribute that the rasteriser computes.
-const DEPTH: &str = "depth";
+/// The attributes that the rasteriser computes, with their formats.
+const RASTERISED: &str = "depth (f32), and front (u32)";
 
 /// The greatest number of attributes of a model that a message lists.
 const MAX_LISTED: usize = 12;
@@ -110,19 +127,13 @@ pub(crate) fn model_attributes(
 ) -> Result<Vec<ModelAttribute>, Failure> {
     let attributes = || {
         let attributes = variants.iter().flat_map(|variant| &variant.attributes);
-        attributes.map(|attribute| (attribute.name.value.as_str(), attribute.format.value))
+        attributes
+            .filter(|attribute| attribute.is_vertex_input())
+            .map(|attribute| (attribute.name.value.as_str(), attribute.format.value))
     };
-    let names: Vec<&str> = attributes().map(|(name, _)| name).filter(|name| *name != DEPTH).collect();
-    if let Some((name, _)) = given.iter().find(|(name, _)| !names.contains(&name.as_str())) {
-        let known = match (nearest_name(name, &names), names.is_empty()) {
-            (_, true) => "it has none that can be set".to_owned(),
-            (Some(nearest), false) => format!("did you mean `{nearest}`? it has {}", names.join(", ")),
-            (None, false) => format!("it has {}", names.join(", ")),
-        };
-        return Err(Failure::Usage(format!("the description has no attribute `{name}` to set: {known}")));
-    }
+    check_given(variants, given)?;
     let mut found: Vec<ModelAttribute> = Vec::new();
-    for (name, format) in attributes().filter(|(name, _)| *name != DEPTH) {
+    for (name, format) in attributes() {
         if value(name, format, given)?.is_some() || scene_row(name).is_some_and(|row| !row.is_default) {
             continue;
         }
@@ -132,6 +143,28 @@ pub(crate) fn model_attributes(
         }
     }
     Ok(found)
+}
+
+/// Checks that the descriptions have each of the attributes that are `given`, and that none of these comes from the rasteriser.
+fn check_given(variants: &[&Variant], given: &[(String, String)]) -> Result<(), Failure> {
+    let attributes = || variants.iter().flat_map(|variant| &variant.attributes);
+    let names: Vec<&str> = attributes()
+        .filter(|attribute| attribute.is_vertex_input())
+        .map(|attribute| attribute.name.value.as_str())
+        .collect();
+    let Some((name, _)) = given.iter().find(|(name, _)| !names.contains(&name.as_str())) else { return Ok(()) };
+    if attributes().any(|attribute| attribute.name.value == *name) {
+        let help = "remove the option, or give the attribute of the description another name";
+        return Err(Failure::Usage(format!(
+            "the attribute `{name}` comes from the rasteriser and cannot be set: {help}"
+        )));
+    }
+    let known = match (nearest_name(name, &names), names.is_empty()) {
+        (_, true) => "it has none that can be set".to_owned(),
+        (Some(nearest), false) => format!("did you mean `{nearest}`? it has {}", names.join(", ")),
+        (None, false) => format!("it has {}", names.join(", ")),
+    };
+    Err(Failure::Usage(format!("the description has no attribute `{name}` to set: {known}")))
 }
 
 /// Returns the failure for a scene without one of the attributes that it was opened with.
@@ -165,7 +198,7 @@ pub(crate) fn missing(
         None => (scene.to_owned(), String::new()),
     };
     Failure::Input(format!(
-        "{place}: the scene has no `{name}: {format}` for the fragments: {other}{nearest}it has {}{more}{}, and {DEPTH}; {}",
+        "{place}: the scene has no `{name}: {format}` for the fragments: {other}{nearest}it has {}{more}{}, {RASTERISED}; {}",
         of_model.concat(),
         scene_data(),
         advice(request)
@@ -179,7 +212,7 @@ pub(crate) fn geometry(
     plan: &Plan,
     memory: Budget,
 ) -> Result<Geometry, Failure> {
-    let attributes = plan.variant.attributes.iter().filter(|attribute| attribute.name.value != DEPTH);
+    let attributes = plan.variant.attributes.iter().filter(|attribute| attribute.is_vertex_input());
     let columns = attributes.map(|attribute| {
         let (name, format) = (attribute.name.value.as_str(), attribute.format.value);
         Ok((words(format), source(name, format, scene, given)?))
@@ -202,7 +235,7 @@ pub(crate) fn geometry(
             vertices.extend(bits(&object.positions, vertex).iter().take(3));
             for (words, source) in &columns {
                 let values = match source {
-                    Source::Scene(read) => read(object, id, vertex),
+                    Source::Scene(read) => read(&SceneVertex { scene, object, id, index: vertex }),
                     Source::Model(index) => model_words(object, *index, (*words, vertex)),
                     Source::Value(value) => *value,
                 };
@@ -227,7 +260,7 @@ pub(crate) fn geometry(
 #[cfg(feature = "playground")]
 pub(crate) fn color_offset(attributes: &[fragbuf_model::Attribute]) -> Option<usize> {
     let mut offset = 3;
-    for attribute in attributes.iter().filter(|attribute| attribute.name.value != DEPTH) {
+    for attribute in attributes.iter().filter(|attribute| attribute.is_vertex_input()) {
         let (name, format) = (attribute.name.value.as_str(), attribute.format.value);
         if scene_row(name).is_some_and(|row| row.is_color && row.formats.contains(&format)) {
             return Some(offset);
@@ -240,7 +273,7 @@ pub(crate) fn color_offset(attributes: &[fragbuf_model::Attribute]) -> Option<us
 /// Checks that every attribute of the descriptions has a source.
 pub(crate) fn check_sources(variants: &[&Variant], scene: &Scene, given: &[(String, String)]) -> Result<(), Failure> {
     let attributes = variants.iter().flat_map(|variant| &variant.attributes);
-    for attribute in attributes.filter(|attribute| attribute.name.value != DEPTH) {
+    for attribute in attributes.filter(|attribute| attribute.is_vertex_input()) {
         source(&attribute.name.value, attribute.format.value, scene, given)?;
     }
     Ok(())
@@ -258,7 +291,7 @@ fn source(name: &str, format: Format, scene: &Scene, given: &[(String, String)])
     }
     index.map(Source::Model).ok_or_else(|| {
         Failure::Input(format!(
-            "the scene has no `{name}: {}` for the fragments: it has {}, and {DEPTH}; {}",
+            "the scene has no `{name}: {}` for the fragments: it has {}, {RASTERISED}; {}",
             format.keyword(),
             scene_data(),
             advice(&request)
@@ -336,6 +369,13 @@ fn value(name: &str, format: Format, given: &[(String, String)]) -> Result<Optio
 fn model_words(object: &Object, index: usize, (count, vertex): (usize, usize)) -> [u32; 4] {
     let words = object.attributes.get(index).and_then(|words| words.get(vertex * count..(vertex + 1) * count));
     std::array::from_fn(|index| words.and_then(|words| words.get(index)).copied().unwrap_or(0))
+}
+
+/// Returns the words of the position in the coordinates of the model. Far from their zero it is rounded to `f32`.
+fn model_position(SceneVertex { scene, object, index, .. }: &SceneVertex<'_>) -> [u32; 4] {
+    let position = object.positions.get(*index).copied().unwrap_or_default();
+    let [x, y, z] = scene.placement.model_position(position).map(f32::to_bits);
+    [x, y, z, 0]
 }
 
 /// Returns the bits of a vertex's values, padded with 0.

@@ -59,6 +59,9 @@ impl Compare {
         let attributes = model_attributes(&[&first.variant, &second.variant], &view.attributes)?;
         let (scene, opaque) = view.scene_views(&attributes)?;
         check_sources(&[&first.variant, &second.variant], &scene.scene, &view.attributes)?;
+        for side in [&first, &second] {
+            uniforms::values(&side.uniforms, &side.variant, &scene)?;
+        }
         let opaque = opaque.as_ref();
         let mut selection = {
             let ((first, first_input), (second, second_input)) = (first.request(opaque, 0), second.request(opaque, 0));
@@ -123,7 +126,7 @@ impl Compare {
         second.uniforms = [&shared_second[..], &self.uniforms_second].concat();
         // Before the first image is rendered.
         for side in [&first, &second] {
-            uniforms::values(&side.uniforms, &side.variant)?;
+            uniforms::check(&side.uniforms, &side.variant)?;
             uniforms::warn_unset(side.description, &side.uniforms, &side.variant);
         }
         Ok([first, second])

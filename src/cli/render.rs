@@ -165,7 +165,7 @@ impl Render {
         files.extend_from_slice(input.files());
         let variant = variant?;
         // Before the scene is loaded and a device is selected.
-        uniforms::values(&self.uniforms, &variant)?;
+        uniforms::check(&self.uniforms, &variant)?;
         if !view.is_later_frame {
             uniforms::warn_unset(self.description(), &self.uniforms, &variant);
         }
@@ -173,6 +173,7 @@ impl Render {
         files.extend(view.importance.clone());
         files.extend([Some(&scene), opaque.as_ref()].into_iter().flatten().flat_map(|view| view.scene.files.clone()));
         check_sources(&[&variant], &scene.scene, &view.attributes)?;
+        uniforms::values(&self.uniforms, &variant, &scene)?;
         let request = RenderRequest {
             description: self.description(),
             set: &set,

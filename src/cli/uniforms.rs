@@ -1,24 +1,88 @@
-//! Parses `--uniform name=value[,value…]`: values of a description's uniforms. The default is 0.
+//! Parses `--uniform name=value[,value…]`, `name=camera` and `name=direction`: values of a description's uniforms. The default is 0.
+//!
+//! Input: names and texts, the description, and the view that it is drawn with. Output: values, or a message with the types and names that the
+//! description declares.
 
 use fragbuf::Variant;
 use fragbuf_frame::Value;
 use fragbuf_model::{Diagnostic, Uniform, UniformType, codes, nearest_name};
+use fragbuf_scene::Eye;
 
 use super::output::{self, Failure};
+use super::view::SceneView;
 
-/// Parses the values by the types that the description declares.
-pub(crate) fn values(given: &[(String, String)], variant: &Variant) -> Result<Vec<(String, Value)>, Failure> {
+/// Checks the values by the types that the description declares, before a scene is loaded.
+pub(crate) fn check(given: &[(String, String)], variant: &Variant) -> Result<(), Failure> {
+    given.iter().try_for_each(|(name, text)| parse(name, text, variant).map(drop))
+}
+
+/// Returns the values for a view.
+pub(crate) fn values(
+    given: &[(String, String)],
+    variant: &Variant,
+    view: &SceneView,
+) -> Result<Vec<(String, Value)>, Failure> {
     let value = |(name, text): &(String, String)| {
-        let Some(uniform) = variant.uniforms.iter().find(|uniform| uniform.name.value == *name) else {
-            return Err(unknown("the description has no", name, "it has", &[variant]));
+        let value = match parse(name, text, variant)? {
+            Given::Value(value) => value,
+            Given::Viewpoint(viewpoint) => Value::Vec3(viewpoint.value(name, view)?),
         };
-        let kind = uniform.kind.value;
-        let value = read(text, kind);
-        value
-            .map(|value| (name.clone(), value))
-            .ok_or_else(|| Failure::Usage(format!("uniform `{name}` takes {}, not `{text}`", expected(kind))))
+        Ok((name.clone(), value))
     };
     given.iter().map(value).collect()
+}
+
+/// A value of the command line.
+enum Given {
+    Value(Value),
+    Viewpoint(Viewpoint),
+}
+
+/// A value of the view, by its name.
+#[derive(Clone, Copy)]
+enum Viewpoint {
+    /// The position of the camera, in the coordinates of the model.
+    Camera,
+    /// The unit vector from the centre of the scene to the camera.
+    Direction,
+}
+
+/// The names of the values of a view, each a `vec3`.
+const VIEWPOINTS: [(&str, Viewpoint); 2] = [("camera", Viewpoint::Camera), ("direction", Viewpoint::Direction)];
+
+impl Viewpoint {
+    fn value(self, uniform: &str, SceneView { scene, camera, .. }: &SceneView) -> Result<[f32; 3], Failure> {
+        match (self, camera.eye) {
+            (Viewpoint::Camera, Eye::At(eye)) => Ok(scene.placement.model_position(eye)),
+            (Viewpoint::Camera, Eye::Along(_)) => Err(Failure::Usage(format!(
+                "uniform `{uniform}` has no value: with `--camera clip` the camera is infinitely far away: write `--uniform \
+                 {uniform}=direction` for the direction to it, or choose another camera"
+            ))),
+            (Viewpoint::Direction, Eye::At(eye)) => Ok(scene.direction_to(eye)),
+            (Viewpoint::Direction, Eye::Along(ray)) => Ok(ray.map(|value| -value)),
+        }
+    }
+}
+
+/// Parses a value by the type that the description declares.
+fn parse(name: &str, text: &str, variant: &Variant) -> Result<Given, Failure> {
+    let Some(uniform) = variant.uniforms.iter().find(|uniform| uniform.name.value == *name) else {
+        return Err(unknown("the description has no", name, "it has", &[variant]));
+    };
+    let kind = uniform.kind.value;
+    let viewpoint = VIEWPOINTS.iter().find(|(word, _)| *word == text);
+    if let Some((_, viewpoint)) = viewpoint.filter(|_| kind == UniformType::Vec3) {
+        return Ok(Given::Viewpoint(*viewpoint));
+    }
+    let words = VIEWPOINTS.map(|(word, _)| word);
+    let help = match (viewpoint, nearest_name(text, &words)) {
+        (Some(_), _) => format!("; `{text}` is the value of a vec3: declare `{name}: vec3`"),
+        (None, Some(nearest)) if kind == UniformType::Vec3 => format!("; did you mean `{nearest}`?"),
+        _ => String::new(),
+    };
+    read(text, kind)
+        .map(Given::Value)
+        .ok_or_else(|| Failure::Usage(format!("uniform `{name}` takes {}, not `{text}`{help}", expected(kind))))
 }
 
 /// Warns of uniforms that the description reads and `given` does not set, with the options that set them.
@@ -99,7 +163,7 @@ fn expected(kind: UniformType) -> &'static str {
         UniformType::U32 => "one whole number, 0 or more",
         UniformType::I32 => "one whole number",
         UniformType::Vec2 => "2 numbers, separated by commas",
-        UniformType::Vec3 => "3 numbers, separated by commas",
+        UniformType::Vec3 => "3 numbers, separated by commas, or `camera` or `direction`",
         UniformType::Vec4 => "4 numbers, separated by commas",
     }
 }

@@ -12,5 +12,6 @@ pub mod peeling_loop;
 pub mod reference;
 pub mod rows;
 pub mod scene;
+pub mod sides;
 pub mod technique;
 pub mod tested_storage;

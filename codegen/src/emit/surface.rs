@@ -1,5 +1,5 @@
 //! Generates the vertex interface of geometry passes in program form: one vertex input per attribute, passed to the fragment stage
-//! unchanged. Depth and implicit attributes come from the rasteriser.
+//! unchanged. Depth, the side of the triangle and implicit attributes come from the rasteriser.
 
 use std::fmt::Write;
 
@@ -33,6 +33,7 @@ pub(super) fn text(plan: &Plan, linking: &Linking) -> String {
         writeln!(text, "    return {};\n}}\n", construct("VertexOutput", std::iter::once(position).chain(attributes)));
     let fields = members.iter().map(|member| match member.source {
         MemberSource::Depth => "inputs.position.z".to_owned(),
+        MemberSource::FrontFacing => format!("select(0u, 1u, inputs.{})", input(member)),
         MemberSource::Vertex | MemberSource::BuiltIn(_) => format!("inputs.{}", input(member)),
     });
     text.push_str("fn fragment_from_inputs(inputs: FragmentInput) -> Fragment {\n");
@@ -48,15 +49,18 @@ fn varyings(name: &str, inputs: &[&Member], members: &[Member], text: &mut Strin
         let _ = writeln!(text, "    @location({location}){flat} {}: {},", input(member), member.format.wgsl_type());
     }
     for member in members {
-        if let MemberSource::BuiltIn(built_in) = &member.source {
-            let _ = writeln!(text, "    @builtin({built_in}) {}: u32,", input(member));
-        }
+        let (built_in, kind) = match &member.source {
+            MemberSource::FrontFacing => ("front_facing", "bool"),
+            MemberSource::BuiltIn(built_in) => (built_in.as_str(), "u32"),
+            MemberSource::Depth | MemberSource::Vertex => continue,
+        };
+        let _ = writeln!(text, "    @builtin({built_in}) {}: {kind},", input(member));
     }
     text.push_str("}\n\n");
 }
 
 fn is_built_in(member: &Member) -> bool {
-    matches!(member.source, MemberSource::BuiltIn(_))
+    matches!(member.source, MemberSource::FrontFacing | MemberSource::BuiltIn(_))
 }
 
 /// Returns the shader input of a member. The name `position` is reserved for that of the vertex or pixel.

@@ -3,6 +3,7 @@
 //! Each front end of the language (file, macro, builder) makes a [`Draft`]; equal descriptions make equal drafts. User
 //! closures are already type-checked and lowered to WGSL, because all front ends share one type checker.
 
+use crate::attribute::Attribute;
 use crate::resumable::{Resumable, Uninterruptible};
 use crate::{Diagnostics, SourceSpan, Spanned};
 
@@ -129,15 +130,6 @@ impl Draft {
             incomplete: Incomplete::default(),
         }
     }
-}
-
-/// One attribute of the payload.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Attribute {
-    /// The name as the user wrote it.
-    pub name: Spanned<String>,
-    /// Its storage format.
-    pub format: Spanned<Format>,
 }
 
 /// The storage format of an attribute, which also determines its type in closures.

@@ -3,6 +3,7 @@
 //!
 //! This crate does not parse, does not write WGSL, does not depend on naga or wgpu, and names no technique.
 
+mod attribute;
 mod check;
 mod diagnostic;
 mod draft;
@@ -15,11 +16,12 @@ mod uniform_block;
 mod user_row;
 mod variant;
 
+pub use attribute::{Attribute, AttributeSource};
 pub use check::{MAX_K, check};
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Label, Severity, codes, counted};
 pub use draft::{
-    Alternative, Attribute, Choice, Draft, Format, Incomplete, Keep, KeepCount, OptionValue, Reads, Suspicious,
-    Uniform, UniformType, Unused, UserFunction,
+    Alternative, Choice, Draft, Format, Incomplete, Keep, KeepCount, OptionValue, Reads, Suspicious, Uniform,
+    UniformType, Unused, UserFunction,
 };
 pub use names::mangled;
 pub use nearest_name::nearest_name;

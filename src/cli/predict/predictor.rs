@@ -79,7 +79,7 @@ pub(crate) fn count(
     let (set, variant) = with_histogram((description, set), input, registry)?;
     let progress = Progress::new();
     progress.set_message(format!("loading {}", view.scene));
-    uniforms::values(uniforms, &variant)?;
+    uniforms::check(uniforms, &variant)?;
     uniforms::warn_unset(description, uniforms, &variant);
     let (scene, _) = view.scene_views(&model_attributes(&[&variant], &view.attributes)?)?;
     check_sources(&[&variant], &scene.scene, &view.attributes)?;

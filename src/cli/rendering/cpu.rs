@@ -61,7 +61,7 @@ pub(super) fn render(
     let importance = view.importance.as_ref().filter(|_| !external.importance.is_empty());
     let importance = importance.map(|path| Importance::read(path, view.size, memory)).transpose()?;
     let memory = importance.as_ref().map_or(memory, |importance| importance.memory).left();
-    let uniforms = uniforms::values(request.uniforms, variant)?;
+    let uniforms = uniforms::values(request.uniforms, variant, scene)?;
     let (width, height) = view.size;
     loop {
         let sizing =

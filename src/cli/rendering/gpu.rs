@@ -177,7 +177,7 @@ impl GpuRenderer {
             ..Settings::new(BLENDED, width, height)
         };
         let pipelines = block_on(device, Pipelines::new(device, &self.shaders, &settings))??;
-        let uniforms = uniforms::values(request.uniforms, variant)?;
+        let uniforms = uniforms::values(request.uniforms, variant, scene)?;
         let (stats, renderer) = loop {
             let sizing =
                 redraw.pool_size.map_or(Sizing::Auto, |fragments| Sizing::Capacity(PoolSize::Fragments(fragments)));

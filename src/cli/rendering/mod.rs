@@ -53,7 +53,7 @@ pub(crate) fn render(
     progress: &Progress,
 ) -> Result<RenderResult, Failure> {
     let mut result = complete(request, input, (view, selection), scene, progress)?.result;
-    let uniforms = uniforms::values(request.uniforms, &result.plan.variant)?;
+    let uniforms = uniforms::values(request.uniforms, &result.plan.variant, scene)?;
     result.warn(request.description, &uniforms, &scene.scene);
     let has_importance =
         result.plan.resources.iter().any(|planned| planned.is_external() && !planned.is_opaque_depth());

@@ -268,7 +268,9 @@ fn rendering(plan: &Plan) -> Vec<Limit> {
     let attributes = from(&|source| *source == MemberSource::Vertex);
     // WebGPU counts built-in inputs of fragment stages as one variable. Fixed sample masks are read as well.
     let reads_mask = plan.requires.contains(&Feature::SampleMask);
-    let built_ins = from(&|source| matches!(source, MemberSource::BuiltIn(_))).max(u64::from(reads_mask)).min(1);
+    let built_ins = from(&|source| matches!(source, MemberSource::FrontFacing | MemberSource::BuiltIn(_)))
+        .max(u64::from(reads_mask))
+        .min(1);
     let color = (Some(("maxColorAttachments", 8)), "maxColorAttachments", "GL_MAX_DRAW_BUFFERS");
     let color_bytes = (Some(("maxColorAttachmentBytesPerSample", 32)), "", "");
     let inputs = (Some(("maxVertexAttributes", 16)), "maxVertexInputAttributes", "GL_MAX_VERTEX_ATTRIBS");

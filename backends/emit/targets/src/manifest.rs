@@ -252,7 +252,7 @@ fn uniform_blocks(context: &Context<'_>) -> Value {
 /// Returns the vertex inputs of geometry passes, in program form.
 fn vertex_inputs(plan: &Plan) -> Value {
     let position = json!({ "location": 0, "name": "position", "type": "vec3<f32>" });
-    let attributes = plan.variant.attributes.iter().filter(|attribute| attribute.name.value != "depth");
+    let attributes = plan.variant.attributes.iter().filter(|attribute| attribute.is_vertex_input());
     let others = (1..).zip(attributes).map(|(location, attribute)| {
         json!({ "location": location, "name": attribute.name.value, "type": attribute.format.value.wgsl_type() })
     });

@@ -2,9 +2,11 @@
 
 use fragbuf_codegen::Form;
 use fragbuf_opengl_host::{Api, Object, Scene};
+use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Blend, Pass, Step};
 
 use crate::draw::{context, generated, host};
+use crate::hosts::sides::{assert_sides, sides, tetrahedron};
 use crate::hosts::technique::IDENTITY;
 use crate::hosts::tested_storage::{registry, tested};
 
@@ -39,5 +41,22 @@ fn front_faces_and_rows_are_those_of_webgpu() {
         let expected = [[0.75, 0.5, 0.25], [0.75, 1.5, 0.25], [0.25, 2.5, 0.5], [0.25, 3.5, 0.5]];
         let seen: Vec<[f32; 3]> = image.pixels.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect();
         assert_eq!(seen, expected, "{api}");
+    }
+}
+
+#[test]
+fn sides_of_a_closed_body_alternate() {
+    for api in [Api::OpenGl, Api::OpenGlEs] {
+        let context = context(api);
+        let generation = generated(api, Form::Program, &sides(), &Registry::builtin());
+        let generation = generation.unwrap_or_else(|why| panic!("{why}"));
+        for is_mirrored in [false, true] {
+            let vertices = tetrahedron(is_mirrored);
+            let objects = [Object { first: 0, count: 12, bounds: [[-1.0, -1.0, 0.0], [1.0, 1.0, 1.0]] }];
+            let scene = Scene { vertices: &vertices, objects: &objects, view_projection: IDENTITY };
+            let mut host = host(&context, &generation, [37, 23]).unwrap_or_else(|error| panic!("{error}"));
+            let image = host.render(&scene, [0.0; 4]).unwrap_or_else(|error| panic!("{error}"));
+            assert_sides(&image.pixels, is_mirrored, &api.to_string());
+        }
     }
 }

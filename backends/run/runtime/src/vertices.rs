@@ -1,4 +1,4 @@
-//! The vertex of a geometry pass: the position, and one input per attribute except depth.
+//! The vertex of a geometry pass: the position, and one input per attribute that the rasteriser does not provide.
 
 use fragbuf_codegen::Plan;
 use fragbuf_model::Format;
@@ -30,7 +30,7 @@ pub struct VertexInput {
 impl VertexInputs {
     /// Returns the inputs of a plan's geometry passes.
     pub fn of(plan: &Plan) -> Self {
-        let attributes = plan.variant.attributes.iter().filter(|attribute| attribute.name.value != "depth");
+        let attributes = plan.variant.attributes.iter().filter(|attribute| attribute.is_vertex_input());
         let attributes =
             attributes.map(|attribute| (attribute.name.value.as_str(), vertex_format(attribute.format.value)));
         let mut stride = 0;

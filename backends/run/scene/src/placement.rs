@@ -66,6 +66,13 @@ impl Placement {
     }
 }
 
+impl Placement {
+    /// Returns a position of the scene in the coordinates of the model, rounded to `f32`; coordinates beyond ±10³⁰ are ±10³⁰.
+    pub fn model_position(self, position: [f32; 3]) -> [f32; 3] {
+        Placement::default().to_scene(self.to_model(position))
+    }
+}
+
 /// Returns the scene of a model.
 pub(crate) fn place(objects: Vec<ModelObject>) -> Scene {
     let placement = Placement::of(bounds(objects.iter().flat_map(ModelObject::corners)));

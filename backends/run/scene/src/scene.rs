@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use glam::Vec3;
+
 use crate::{AttributeRequest, Placement, Warning};
 
 /// The triangles of a scene, object after object.
@@ -61,6 +63,13 @@ impl Scene {
     /// Returns the least and greatest coordinates of the triangles; `None` if there are none.
     pub fn bounds(&self) -> Option<([f32; 3], [f32; 3])> {
         bounds(&self.objects)
+    }
+
+    /// Returns the unit vector from the centre of the scene towards a point; the z axis if they are equal.
+    pub fn direction_to(&self, point: [f32; 3]) -> [f32; 3] {
+        let (least, greatest) = self.bounds().unwrap_or_default();
+        let centre = Vec3::from_array(least).midpoint(Vec3::from_array(greatest));
+        (Vec3::from_array(point) - centre).normalize_or(Vec3::Z).to_array()
     }
 
     /// Returns the bytes of the lists of all objects.

@@ -334,7 +334,9 @@ fn a_mirrored_node_keeps_its_triangles() {
         read(&[("m.gltf", gltf(|model| model["nodes"][0]["scale"] = json!([-0.5, 0.5, 1])).as_bytes())]).unwrap();
     let object = &scene.objects[0];
     let mirrored = CORNERS.map(|[x, y, z]| [-0.5 * x, 0.5 * y, z]);
-    assert_eq!((object.positions.as_slice(), object.triangles.len()), (&mirrored[..], 2));
+    assert_eq!(object.positions, mirrored);
+    // Corners of a mirrored node are clockwise, so they are turned.
+    assert_eq!(object.triangles, [[0, 2, 1], [0, 3, 2]]);
     let by_matrix =
         gltf(|model| model["nodes"][0]["matrix"] = json!([-0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]));
     assert_eq!(read(&[("m.gltf", by_matrix.as_bytes())]).unwrap().objects[0].positions, mirrored);

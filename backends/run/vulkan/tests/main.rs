@@ -7,6 +7,7 @@
 
 mod drivers;
 mod effects;
+mod facing;
 #[path = "../../../../tests/oracle/hosts.rs"]
 mod hosts;
 mod interlock;

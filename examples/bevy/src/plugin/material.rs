@@ -19,10 +19,11 @@ pub const MATERIAL_GROUP: usize = GROUP as usize + 1;
 pub const IMAGE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// What a material of Bevy gives: the name and the type of the attribute, and the expression.
-const GIVEN: [(&str, &str, &str); 4] = [
+const GIVEN: [(&str, &str, &str); 5] = [
     ("color", "vec4<f32>", "color"),
     // Bevy's depth is reversed.
     ("depth", "f32", "1.0 - vertex.position.z"),
+    ("front", "u32", "u32(is_front)"),
     ("normal", "vec3<f32>", "pbr.N"),
     ("position", "vec3<f32>", "vertex.world_position.xyz"),
 ];

@@ -85,7 +85,7 @@ impl Writer<'_> {
         if self.form != Form::Program {
             return self.table("struct fragbuf_vertex_input", "vertex_inputs", &[]);
         }
-        let inputs = self.plan.variant.attributes.iter().filter(|attribute| attribute.name.value != "depth");
+        let inputs = self.plan.variant.attributes.iter().filter(|attribute| attribute.is_vertex_input());
         let others = inputs.map(|attribute| (attribute.name.value.clone(), attribute.format.value.wgsl_type()));
         let all: Vec<(String, &str)> = std::iter::once(("position".to_owned(), "vec3<f32>")).chain(others).collect();
         self.text.push('\n');

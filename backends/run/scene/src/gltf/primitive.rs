@@ -89,6 +89,8 @@ impl Reader<'_> {
             _ => count.saturating_sub(2),
         };
         self.budget.triangles(triangles as u64)?;
+        // Corners of a mirrored node are clockwise.
+        let is_mirrored = transform.determinant() < 0.0;
         object.triangles.reserve(triangles);
         for turn in 0..triangles {
             let mut triangle = [0; 3];
@@ -98,6 +100,9 @@ impl Reader<'_> {
                     return Err(error(format!("no vertex {index}: it has {vertices}")));
                 }
                 *corner = first + index;
+            }
+            if is_mirrored {
+                triangle.swap(1, 2);
             }
             object.triangles.push(triangle);
         }
