@@ -41,7 +41,7 @@ fn every_effect_has_a_row_a_description_and_a_reference() {
     let files: BTreeSet<String> =
         files.map(|file| file.unwrap().path().file_stem().unwrap().to_str().unwrap().to_owned()).collect();
     let references: BTreeSet<String> = EFFECTS.iter().map(|effect| effect.name.to_owned()).collect();
-    assert!(listed().is_subset(&files) && listed().is_subset(&references));
+    assert_eq!((&listed(), &listed()), (&files, &references));
     for name in files {
         let text = std::fs::read_to_string(root().join(format!("examples/effects/{name}.fragbuf"))).unwrap();
         for head in ["// Source: ", "// Needs: ", "// Works over "] {

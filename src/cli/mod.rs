@@ -55,6 +55,8 @@ mod progress_line;
 mod render;
 #[cfg(feature = "pictures")]
 mod rendering;
+#[cfg(feature = "pictures")]
+mod scene_data;
 mod show;
 #[cfg(feature = "playground")]
 mod site;

@@ -18,16 +18,138 @@ macro_rules! row {
 }
 
 /// Every effect.
-pub(crate) const EFFECTS: &[Effect] = &[row!(
-    "transparency",
-    "surfaces of one opacity, composited front to back",
-    "B06 §4.1",
-    reads: None,
-    &[
-        ("--scene", "builtin:marbles,n=160"),
-        ("--size", "960x540"),
-        ("--shading", "unlit"),
-        ("--uniform", "alpha=0.35"),
-        ("--set", "samples=coverage"),
-    ]
-)];
+pub(crate) const EFFECTS: &[Effect] = &[
+    row!(
+        "transparency",
+        "surfaces of one opacity, which reflect two lamps",
+        "B06 §4.1",
+        reads: None,
+        &[
+            ("--scene", "builtin:marbles,n=40,seed=7"),
+            ("--size", "960x540"),
+            ("--camera", "orbit:10,20,zoom:1.15"),
+            ("--shading", "unlit"),
+            ("--uniform", "alpha=0.4"),
+            ("--uniform", "camera=camera"),
+            ("--set", "samples=coverage"),
+        ]
+    ),
+    row!(
+        "translucency",
+        "solids that absorb light, by the length of the ray inside of them, with Fresnel's transmittance",
+        "B06 §4.1",
+        reads: None,
+        &[
+            ("--scene", "builtin:knot,rings=400,sides=48"),
+            ("--size", "960x540"),
+            ("--camera", "orbit:90,60,zoom:1.15"),
+            ("--uniform", "absorption=3.2,0.8,2.0"),
+            ("--uniform", "camera=camera"),
+            ("--set", "samples=coverage"),
+        ]
+    ),
+    row!(
+        "csg",
+        "a boolean expression over solids, with caps, also where faces are coplanar",
+        "B06 §4.1, D13 §4",
+        reads: None,
+        &[
+            ("--scene", "builtin:cubes"),
+            ("--size", "960x540"),
+            ("--shading", "unlit"),
+            ("--set", "samples=coverage"),
+        ]
+    ),
+    row!(
+        "wireframe",
+        "lines along all edges of triangles over translucent surfaces",
+        "D13 §4",
+        reads: None,
+        &[
+            ("--scene", "builtin:knot,rings=90,sides=12"),
+            ("--size", "960x540"),
+            ("--camera", "orbit:15,20"),
+            ("--shading", "unlit"),
+            ("--uniform", "width=0.012"),
+            ("--uniform", "alpha=0.35"),
+            ("--set", "samples=coverage"),
+        ]
+    ),
+    row!(
+        "self_collision",
+        "where a model runs into itself, in red, seen through it",
+        "D13 §4",
+        reads: None,
+        &[
+            ("--scene", "builtin:knot,turns=5,thickness=50,rings=500,sides=48"),
+            ("--size", "960x540"),
+            ("--camera", "orbit:15,20,zoom:1.15"),
+            ("--shading", "unlit"),
+            ("--uniform", "alpha=0.3"),
+            ("--set", "samples=coverage"),
+        ]
+    ),
+    row!(
+        "winding_number",
+        "the greatest winding number along a ray, as a colour",
+        "D13 §4",
+        reads: None,
+        &[
+            ("--scene", "builtin:knot,turns=5,thickness=60,rings=500,sides=48"),
+            ("--size", "960x540"),
+            ("--camera", "orbit:15,20"),
+        ]
+    ),
+    row!(
+        "self_trimmed",
+        "the solid that a rule for winding numbers makes of a surface that crosses itself",
+        "D13 §4",
+        reads: None,
+        &[
+            ("--scene", "builtin:knot,turns=7,thickness=55,rings=700,sides=64"),
+            ("--size", "960x540"),
+            ("--camera", "orbit:15,20,zoom:1.25"),
+            ("--shading", "unlit"),
+            ("--uniform", "rule=2"),
+            ("--set", "samples=coverage"),
+        ]
+    ),
+    row!(
+        "coplanarity",
+        "how many fragments of a pixel have the depth of another one",
+        "D13 Fig. 13",
+        reads: None,
+        &[
+            ("--scene", "builtin:layers,n=40,coplanar=4,pixels=60,fragments=40"),
+            ("--size", "960x540"),
+            ("--camera", "clip"),
+        ]
+    ),
+    row!(
+        "complexity",
+        "the number of fragments of a pixel as a heat map",
+        "D13 §4",
+        reads: None,
+        &[
+            ("--scene", "builtin:marbles,n=400"),
+            ("--size", "960x540"),
+            ("--camera", "orbit:0,35,zoom:1.25"),
+            ("--uniform", "most=20"),
+            ("--set", "samples=coverage"),
+        ]
+    ),
+    row!(
+        "midpoint",
+        "the mean depth of the two nearest surfaces, as midpoint shadow maps store it",
+        "B06 §4.1, Woo 1992",
+        reads: Some(2),
+        &[
+            ("--scene", "builtin:knot,rings=400,sides=48"),
+            ("--size", "960x540"),
+            ("--camera", "orbit:15,20"),
+            ("--background", "0,0,0,1"),
+            ("--uniform", "near=0.78"),
+            ("--uniform", "far=0.95"),
+        ]
+    ),
+];

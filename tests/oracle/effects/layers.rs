@@ -1,9 +1,12 @@
 //! References of effects that composite layers: B06 section 4.1.
 
 use super::ray::{Hit, Ray};
-use super::solids::{dot, scale, sub, unit};
+use super::solids::{add, dot, scale, sub, unit};
 
 pub const ALPHA: f32 = 0.375;
+
+/// The width of lines, in the units of clip space.
+pub const WIDTH: f32 = 0.15;
 
 /// A point in front of the frame, from which angles are measured.
 pub const CAMERA: [f32; 3] = [0.25, 0.5, -3.0];
@@ -14,9 +17,29 @@ pub const ABSORPTION: [f32; 3] = [0.5, 1.25, 3.0];
 const AMBIENT: f64 = 0.2;
 const LAMPS: [([f64; 3], f64); 2] = [([0.48, 0.8, 0.36], 0.6), ([-0.8, 0.0, 0.6], 0.3)];
 
-/// Light through all layers behind the front: the painter's algorithm, from the farthest.
+/// Surfaces with lamps that they reflect, by the painter's algorithm: from the farthest, each over those behind it.
 pub fn transparency(ray: &Ray<'_>) -> [f64; 4] {
-    painted(ray.hits.iter().map(|hit| (surface(hit), f64::from(ALPHA))))
+    ray.hits.iter().rev().fold([0.0; 4], |behind, hit| {
+        let normal = hit.triangle.normal;
+        let to_camera = unit(sub(CAMERA.map(f64::from), ray.position(hit.depth)));
+        // Blinn's exponent and strength.
+        let shine = |lamp: [f64; 3]| 0.8 * dot(normal, unit(add(to_camera, lamp))).abs().powi(60);
+        let [first, second] = LAMPS.map(|(lamp, _)| lamp);
+        let diffuse = AMBIENT + 0.65 * dot(normal, first).abs() + 0.3 * dot(normal, second).abs();
+        let specular = 0.65 * shine(first) + 0.3 * shine(second);
+        let alpha = f64::from(ALPHA);
+        let [r, g, b] = color(hit).map(|channel| alpha * diffuse * channel + specular);
+        std::array::from_fn(|channel| [r, g, b, alpha][channel] + (1.0 - alpha) * behind[channel])
+    })
+}
+
+/// Opaque lines where one of the edges of the triangle is near, over translucent surfaces.
+pub fn wireframe(ray: &Ray<'_>) -> [f64; 4] {
+    painted(ray.hits.iter().map(|hit| {
+        let is_line = ray.edge_distance(hit) < 0.5 * f64::from(WIDTH);
+        let part = if is_line { 0.25 } else { 1.0 };
+        (scale(surface(hit), part), if is_line { 1.0 } else { f64::from(ALPHA) })
+    }))
 }
 
 /// Composites straight colours from back to front. Input: from front to back.

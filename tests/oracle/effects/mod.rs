@@ -91,7 +91,7 @@ macro_rules! effect {
 pub const EFFECTS: &[Effect] = &[
     effect!(
         "transparency",
-        &[("alpha", Number::F32(layers::ALPHA))],
+        &[("camera", Number::Vec3(layers::CAMERA)), ("alpha", Number::F32(layers::ALPHA))],
         open over PEELED,
         ("1.0 - sum.w", "1.01 - sum.w"),
         layers::transparency
@@ -103,6 +103,7 @@ pub const EFFECTS: &[Effect] = &[
         ("powf(5.0)", "powf(4.0)"),
         layers::translucency
     ),
+    effect!("wireframe", &[("width", Number::F32(layers::WIDTH)), ("alpha", Number::F32(layers::ALPHA))], open over PEELED, ("2.0 * f.edges", "1.5 * f.edges"), layers::wireframe),
     effect!("csg", &[], closed over ALL, ("> f.depth", ">= f.depth"), crossings::csg),
     effect!(
         "self_collision",

@@ -65,6 +65,11 @@ impl<'a> Ray<'a> {
         self.hits.iter().filter(move |hit| (hit.depth - depth).abs() < EQUAL)
     }
 
+    /// Returns the distance of a hit from the nearest edge of its triangle.
+    pub fn edge_distance(&self, hit: &Hit<'_>) -> f64 {
+        hit.triangle.edge_distances(self.position(hit.depth)).into_iter().fold(f64::INFINITY, f64::min)
+    }
+
     /// Returns the position of a depth.
     pub fn position(&self, depth: f64) -> [f64; 3] {
         [self.point[0], self.point[1], depth]

@@ -16,6 +16,18 @@ pub struct Triangle {
     pub color: [u8; 4],
 }
 
+impl Triangle {
+    /// Returns the distances of a point of the triangle from the lines through its edges, which are opposite to its corners.
+    pub fn edge_distances(&self, point: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|edge| {
+            let [from, to] = [self.corners[(edge + 1) % 3], self.corners[(edge + 2) % 3]];
+            let along = unit(sub(to, from));
+            let across = sub(sub(point, from), scale(along, dot(sub(point, from), along)));
+            dot(across, across).sqrt()
+        })
+    }
+}
+
 /// The triangles of solids.
 pub struct Solids {
     pub triangles: Vec<Triangle>,
@@ -100,6 +112,7 @@ impl Solids {
                     match *input {
                         "position" => push(&corner),
                         "color" => push(&triangle.color.map(|channel| f64::from(channel) / 255.0)),
+                        "edges" => push(&triangle.edge_distances(corner)),
                         "normal" => push(&triangle.normal),
                         "id" => bytes.extend(triangle.id.to_le_bytes()),
                         "front" => bytes.extend(u32::from(triangle.normal[2] < 0.0).to_le_bytes()),
@@ -143,6 +156,10 @@ pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 pub fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| a[i] - b[i])
+}
+
+pub fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|i| a[i] + b[i])
 }
 
 pub fn scale(a: [f64; 3], factor: f64) -> [f64; 3] {

@@ -2,6 +2,7 @@
 
 mod cubes;
 mod hairball;
+mod knot;
 mod layers;
 mod marbles;
 mod needles;
@@ -25,8 +26,8 @@ pub struct BuiltinScene {
 }
 
 /// The registry rows of all generated scenes.
-pub const BUILTIN_SCENES: [Row; 7] =
-    [cubes::ROW, slabs::ROW, layers::ROW, marbles::ROW, hairball::ROW, needles::ROW, slivers::ROW];
+pub const BUILTIN_SCENES: [Row; 8] =
+    [cubes::ROW, slabs::ROW, layers::ROW, marbles::ROW, hairball::ROW, needles::ROW, slivers::ROW, knot::ROW];
 
 impl BuiltinScene {
     /// Generates the scene. `Err`: it is larger than the limits.
@@ -45,7 +46,7 @@ impl FromStr for BuiltinScene {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self, Error> {
-        static ROWS: [Row; 7] = BUILTIN_SCENES;
+        static ROWS: [Row; 8] = BUILTIN_SCENES;
         let mut parts = text.split(',');
         let name = parts.next().unwrap_or("");
         let Some(row) = ROWS.iter().find(|row| row.name == name) else {
