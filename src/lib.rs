@@ -40,8 +40,12 @@ pub mod source_file;
 pub mod user_file;
 
 pub use fragbuf_codegen::{Arrival, Form, GENERATOR, Linking, Plan, Profile, Program, link, plan};
-pub use fragbuf_dsl::{CapturedTokens, Fragments, UniformValue, builder, closure, function, glam};
-pub use fragbuf_model::{Diagnostic, Diagnostics, Draft, Selection, Severity, SourceSpan, Variant, check};
+pub use fragbuf_dsl::{
+    CapturedTokens, Fragments, Image, Texture2d, Texture3d, UniformValue, builder, closure, function, glam,
+};
+pub use fragbuf_model::{
+    Diagnostic, Diagnostics, Draft, Selection, Severity, SourceSpan, Texture, TextureDimension, Variant, check,
+};
 pub use fragbuf_syntax::{Parsed, parse};
 pub use fragbuf_targets::{
     Binding, BindingKind, Checked, File, Generation, JSON_SCHEMA, Limit, Needed, OpenGlBindings, Request, Requirements,

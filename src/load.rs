@@ -161,7 +161,7 @@ pub fn alternatives(
             continue;
         }
         let current = chosen_values(description, set, registry, &missing.axis);
-        let others = registry.rows_of(&missing.axis).filter(|row| row.key != Registry::CLOSURE);
+        let others = registry.rows_of(&missing.axis).filter(|row| !Registry::is_of_closures(row));
         let supported = others.filter(|row| {
             let more = [set, &[(missing.axis.clone(), format!("{current} else {}", row.key))]].concat();
             variant(description, &more, registry).is_ok_and(|variant| select(&variant, target, request).is_ok())

@@ -110,7 +110,7 @@ fn unnamed() -> Vec<Case> {
         seen.extend(rows.map(|row| (row.axis.clone(), row.key.clone())));
     }
     let is_chosen = |row: &&Row| registry.axis(&row.axis).is_some_and(|axis| axis.chosen);
-    let is_new = |row: &&Row| !seen.contains(&(row.axis.clone(), row.key.clone())) && row.key != Registry::CLOSURE;
+    let is_new = |row: &&Row| !seen.contains(&(row.axis.clone(), row.key.clone())) && !Registry::is_of_closures(row);
     registry.rows().iter().filter(is_chosen).filter(is_new).map(|row| case_of(row, &registry)).collect()
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Planning begins with the steps of the storage; the other rows edit them in the order of the axes. A plan contains no source code.
 
+mod described;
 mod dump;
 mod edit;
 mod formulas;
@@ -11,6 +12,7 @@ mod resource;
 mod summary;
 mod textures;
 
+pub(crate) use described::{IMAGE, IMAGE_WORDS};
 pub use formulas::bucket;
 pub(crate) use implementations::{axis_of, instance_row};
 use notation::{normal_form, runs, words_per_pixel};
@@ -87,7 +89,7 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
     let rows = || selection.rows.iter().map(|selected| &*selected.row);
     let (mut symbols, constants) = formulas::symbols(variant, selection, &layout)?;
     formulas::check_user_formulas(variant, selection, &symbols)?;
-    let built = build(selection, registry, (&symbols, &layout), &constants).map_err(error)?;
+    let built = build((variant, selection), registry, (&symbols, &layout), &constants).map_err(error)?;
     bound_k(variant, &mut symbols).map_err(|problem| error(problem.to_string()))?;
     let provides = selection.provides();
     let given = variant.description_values(selection);
@@ -132,7 +134,7 @@ struct Built {
 }
 
 fn build(
-    selection: &Selection,
+    (variant, selection): (&Variant, &Selection),
     registry: &Registry,
     (symbols, layout): (&SymbolTable, &Layout),
     constants: &[(String, u32)],
@@ -142,9 +144,10 @@ fn build(
     let mut steps: Vec<Step> = selection.rows.iter().flat_map(|selected| selected.row.steps.iter().cloned()).collect();
     for selected in &selection.rows {
         for change in &selected.row.edits {
-            edit::apply(change, &mut steps, &mut resources, constants)?;
+            edit::apply(change, &mut steps, &mut resources, constants, variant)?;
         }
     }
+    described::add(variant, &mut steps, &mut resources);
     implementations::complete(&mut steps, &mut resources, selection, registry)?;
     edit::choose_accesses(&mut steps, selection.provides().contains(&Capability::MutualExclusion));
     let declared: Vec<String> = resources.iter().map(|resource| resource.name.clone()).collect();
@@ -239,6 +242,11 @@ impl Plan {
     /// Tests whether `frame` in shaders has a field for the symbol.
     pub fn has_field(&self, id: SymbolId) -> bool {
         self.fields.contains(&id)
+    }
+
+    /// Tests whether passes read memory of other pixels, so that a frame cannot be divided into slices.
+    pub fn needs_whole_frame(&self) -> bool {
+        !self.variant.images.is_empty()
     }
 
     /// Returns a resource by name.

@@ -34,12 +34,14 @@
 
 pub mod builder;
 mod expanded;
+mod textures;
 
 pub use expanded::{Fragments, UniformValue};
 pub use fragbuf_model::{Diagnostic, Diagnostics, Draft, SourceSpan, Variant, check};
 pub use fragbuf_syntax::{CapturedTokens, Parsed, parse};
 pub use fragbuf_templates::Registry;
 pub use glam;
+pub use textures::{Image, Texture2d, Texture3d};
 
 #[doc(hidden)]
 pub use fragbuf_macros as macros;

@@ -26,7 +26,7 @@ pub(super) fn axis(axis: &Axis, registry: &Registry) -> String {
         let _ = write!(text, "\nDefault: `{default}`, unless the technique or another choice gives one.\n");
     }
     text.push('\n');
-    for row in registry.rows_of(axis.key).filter(|row| row.key != Registry::CLOSURE) {
+    for row in registry.rows_of(axis.key).filter(|row| !Registry::is_of_closures(row)) {
         let _ = writeln!(text, "* `{}`: {}", row.key, row.summary);
     }
     text

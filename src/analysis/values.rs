@@ -78,7 +78,7 @@ pub(super) fn reason(error: &Diagnostic) -> String {
 /// Returns the values of an axis with the first error that each has and others do not.
 pub(super) fn values<'r>(draft: &Draft, axis: &str, registry: &'r Registry) -> Vec<(&'r Row, Option<Diagnostic>)> {
     let rows: Vec<&Row> =
-        registry.rows().iter().filter(|row| row.axis == axis && row.key != Registry::CLOSURE).collect();
+        registry.rows().iter().filter(|row| row.axis == axis && !Registry::is_of_closures(row)).collect();
     let errors: Vec<Vec<Diagnostic>> = rows.iter().map(|row| errors(draft, axis, &row.key, registry)).collect();
     // What is wrong for every value is no reason against one.
     let is_general = |error: &Diagnostic| {

@@ -1,4 +1,4 @@
-//! Parses `name=value` arguments of `--set`, `--uniform` and `--attribute`.
+//! Parses `name=value` arguments of `--set`, `--uniform`, `--attribute` and `--texture`.
 
 /// Parses `axis=value`, `axis.option=value` or `k=8`.
 pub(crate) fn assignment(text: &str) -> Result<(String, String), String> {
@@ -29,5 +29,16 @@ pub(crate) fn attribute(text: &str) -> Result<(String, String), String> {
             "write name=value: an attribute of the fragments and its value, as `heat=0.3`, or `flow=0,1` for a vector"
                 .to_owned(),
         ),
+    }
+}
+
+/// Parses `name=source` of a texture.
+#[cfg(feature = "pictures")]
+pub(crate) fn texture(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, source)) if !name.trim().is_empty() && !source.trim().is_empty() => {
+            Ok((name.trim().to_owned(), source.trim().to_owned()))
+        }
+        _ => Err("write name=FILE: a texture of the description and an image, as `lut=colors.png`".to_owned()),
     }
 }

@@ -12,6 +12,7 @@ use super::input::Input;
 use super::output::{self, Failure};
 use super::picture;
 use super::progress::Progress;
+use super::rendering::textures::check_names;
 use super::rendering::{RenderRequest, render, select};
 use super::statistics::{FragmentCounts, statistics};
 use super::uniforms;
@@ -127,6 +128,7 @@ impl Compare {
         // Before the first image is rendered.
         for side in [&first, &second] {
             uniforms::check(&side.uniforms, &side.variant)?;
+            check_names(&[&first.variant, &second.variant], &self.view.textures)?;
             uniforms::warn_unset(side.description, &side.uniforms, &side.variant);
         }
         Ok([first, second])

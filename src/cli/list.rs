@@ -69,7 +69,7 @@ fn axes(registry: &Registry) -> String {
          `sync: spin_lock {{ limit: 4096 }}`.\n\n| axis | value | | options |\n|---|---|---|---|\n"
     );
     for axis in chosen() {
-        let mut rows: Vec<&Row> = registry.rows_of(axis.key).filter(|row| row.key != Registry::CLOSURE).collect();
+        let mut rows: Vec<&Row> = registry.rows_of(axis.key).filter(|row| !Registry::is_of_closures(row)).collect();
         rows.sort_by_key(|row| axis.default != Some(row.key.as_str()));
         for (number, row) in rows.iter().enumerate() {
             let name = if number == 0 { axis.key } else { "" };

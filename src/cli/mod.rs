@@ -30,6 +30,8 @@ mod explain;
 #[cfg(feature = "figures")]
 mod figure;
 mod generate;
+#[cfg(feature = "pictures")]
+mod image_file;
 mod input;
 mod language;
 mod limits;

@@ -19,6 +19,7 @@ use super::input::Input;
 use super::output::{self, Failure};
 use super::picture;
 use super::progress::Progress;
+use super::rendering::textures::check_names;
 use super::rendering::{DeviceSelection, RenderRequest, RenderResult, render, select};
 use super::statistics::statistics;
 use super::uniforms;
@@ -166,6 +167,7 @@ impl Render {
         let variant = variant?;
         // Before the scene is loaded and a device is selected.
         uniforms::check(&self.uniforms, &variant)?;
+        check_names(&[&variant], &self.view.textures)?;
         if !view.is_later_frame {
             uniforms::warn_unset(self.description(), &self.uniforms, &variant);
         }

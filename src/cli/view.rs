@@ -9,7 +9,7 @@ use fragbuf_model::nearest_name;
 use fragbuf_scene::{AttributeRequest, BUILTIN_SCENES, Camera, Error, Limits, Scene};
 
 use super::arrangement::{self, Arrangement, Disorder};
-use super::assignment::attribute;
+use super::assignment::{attribute, texture};
 use super::attributes::{self, ModelAttribute};
 use super::camera::CameraRequest;
 use super::device::{self, DeviceRequest};
@@ -29,6 +29,10 @@ pub(crate) struct View {
     /// PNG of the size of the image with the importance of each pixel, white for the most, for `allocation=by_importance`
     #[arg(long, value_name = "PNG")]
     pub(crate) importance: Option<PathBuf>,
+    /// Texture of the description: a PNG, with `,slices=N` for three dimensions (slices one below the other), or
+    /// `preintegrated:PNG,length=L,extinction=E`, the table of a transfer function for ray segments. Channels are read as stored, from 0 to 1
+    #[arg(long = "texture", value_name = "NAME=PNG[,slices=N]", value_parser = texture)]
+    pub(crate) textures: Vec<(String, String)>,
     /// Size of the image in pixels
     #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = size)]
     pub(crate) size: (u32, u32),
@@ -146,6 +150,7 @@ impl View {
             scene,
             opaque: None,
             importance: None,
+            textures: Vec::new(),
             size,
             out: PathBuf::new(),
             camera,
@@ -224,11 +229,15 @@ impl View {
         Ok(scene)
     }
 
-    /// Returns the paths of the models among the scenes, and that of the importance.
+    /// Returns the paths of the models among the scenes, and those of images.
     pub(crate) fn files(&self) -> impl Iterator<Item = PathBuf> {
         let scenes = std::iter::once(&self.scene).chain(&self.opaque);
         let models = scenes.filter(|scene| !scene.starts_with("builtin:")).map(PathBuf::from);
-        models.chain(self.importance.clone())
+        let textures = self.textures.iter().map(|(_, source)| {
+            let path = source.strip_prefix("preintegrated:").unwrap_or(source);
+            PathBuf::from(path.split(',').next().unwrap_or_default())
+        });
+        models.chain(self.importance.clone()).chain(textures)
     }
 
     /// Returns the memory that is left beside scenes.

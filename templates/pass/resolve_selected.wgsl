@@ -4,6 +4,8 @@
 /// The best fragments so far, best first.
 var<private> selected: array<Packed, CAPACITY>;
 var<private> selected_count: u32;
+/// The index of the pixel.
+var<private> resolved: u32;
 
 @fragment
 fn resolve(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
@@ -11,11 +13,11 @@ fn resolve(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         // A helper invocation: its result has no effect.
         return vec4<f32>(0.0);
     }
-    let pixel = pixel_index(position.xy);
-    var cursor = storage_first(pixel);
+    resolved = pixel_index(position.xy);
+    var cursor = storage_first(resolved);
     while cursor != END {
-        select_fragment(pixel, storage_read(pixel, cursor));
-        cursor = storage_next(pixel, cursor);
+        select_fragment(storage_read(resolved, cursor));
+        cursor = storage_next(resolved, cursor);
     }
     for (var slot = resolve_first(); slot != END; slot = resolve_next(slot)) {
         sort_gather(resolve_read(slot));
@@ -23,12 +25,12 @@ fn resolve(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     sort_finish();
     if sorted_count() == 0u {
         // If a pass serves only some pixels, the others have fragments but no layers.
-        if overflow_is_empty(pixel) || resolve_first() != END {
+        if overflow_is_empty(resolved) || resolve_first() != END {
             discard;
         }
-        return overflow_finish(pixel, vec4<f32>(0.0));
+        return overflow_finish(resolved, vec4<f32>(0.0));
     }
-    return overflow_finish(pixel, samples_resolve());
+    return overflow_finish(resolved, samples_resolve());
 }
 
 fn resolve_first() -> u32 {
@@ -44,14 +46,14 @@ fn resolve_read(cursor: u32) -> Packed {
 }
 
 /// Inserts a fragment in order. The worst of more than k is lost.
-fn select_fragment(pixel: u32, entry: Packed) {
+fn select_fragment(entry: Packed) {
     if selected_count == frame.k {
         let worst = selected[frame.k - 1u];
         if !better(entry, worst) {
-            on_lost(pixel, entry, DISPLACED);
+            on_lost(resolved, entry, DISPLACED);
             return;
         }
-        on_lost(pixel, worst, DISPLACED);
+        on_lost(resolved, worst, DISPLACED);
     } else {
         selected_count += 1u;
     }

@@ -67,6 +67,18 @@ pub(crate) fn rows() -> Vec<Row> {
             vec!["addressing", "storage", "overflow", "samples", "sort", "resolve"],
         ),
         row(
+            "resolve_image",
+            "computes an image from each pixel's fragments",
+            template!("pass/resolve_image"),
+            vec!["addressing", "storage", "samples", "sort", "resolve"],
+        ),
+        row(
+            "resolve_selected_image",
+            "selects the k best of each pixel's fragments and computes an image from them",
+            template!("pass/resolve_selected_image"),
+            vec!["addressing", "storage", "samples", "sort", "resolve"],
+        ),
+        row(
             "resolve_selected",
             "selects the k best of each pixel's fragments and computes one colour from them",
             template!("pass/resolve_selected"),

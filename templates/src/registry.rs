@@ -45,8 +45,19 @@ impl Registry {
     /// The value on the axis `resolve` that stands for the closure of the description.
     pub const CLOSURE: &str = resolve::CLOSURE;
 
+    /// The value on the axis `resolve` that stands for a closure over two neighbouring fragments.
+    pub const BETWEEN: &str = resolve::BETWEEN;
+
+    /// The value on the axis `resolve` that stands for a closure that reads images, which are computed first.
+    pub const STEPS: &str = resolve::STEPS;
+
     /// The axis on which a closure is a value.
     pub const CLOSURE_AXIS: &str = "resolve";
+
+    /// Whether a row stands for closures of the description, so that a description cannot choose it by name.
+    pub fn is_of_closures(row: &Row) -> bool {
+        row.axis == Self::CLOSURE_AXIS && [Self::CLOSURE, Self::BETWEEN, Self::STEPS].contains(&row.key.as_str())
+    }
 
     /// Makes the registry of all rows of fragbuf.
     pub fn builtin() -> Self {

@@ -1,10 +1,16 @@
 //! Axis `resolve`: what is computed from the kept fragments.
 
 use crate::conditions::{ADD_COLOR, color};
-use crate::vocabulary::{Capability, Parameter, Row};
+use crate::vocabulary::{Capability, Edit, Parameter, Row};
 
 /// The value that stands for the closure of the description.
 pub(crate) const CLOSURE: &str = "closure";
+
+/// The value that stands for a closure over two neighbouring fragments.
+pub(crate) const BETWEEN: &str = "between";
+
+/// The value that stands for a closure that reads images.
+pub(crate) const STEPS: &str = "steps";
 
 /// The constant with the number of the layer that an effect shows alone. A row on the axis `resolve` with a parameter of this constant is such an
 /// effect.
@@ -76,6 +82,29 @@ pub(crate) fn rows() -> Vec<Row> {
             requires: vec![Capability::LayersInOrder],
             implies: vec![("resumable".into(), Capability::Resumes)],
             ..Row::new("resolve", CLOSURE, "the closure of the description, `resolve |fragments, u| { … }`", "")
+        },
+        Row {
+            template: Some(template!("resolve/between")),
+            calls: vec!["samples"],
+            requires: vec![Capability::Sorted],
+            provides: vec![Capability::PairValues],
+            ..Row::new(
+                "resolve",
+                BETWEEN,
+                "the closure of the description, `between |front, back, gap, u| { … }`, composited front to back",
+                "B06 §4.3; Porter & Duff 1984",
+            )
+        },
+        Row {
+            calls: vec!["samples"],
+            requires: vec![Capability::Sorted, Capability::OneResolve],
+            edits: vec![Edit::Images("resolve".to_owned())],
+            ..Row::new(
+                "resolve",
+                STEPS,
+                "the closure of the description after its images, `image name |fragments, u| { … }`",
+                "",
+            )
         },
     ]
 }

@@ -2,10 +2,11 @@
 
 use crate::vocabulary::Template;
 
-pub(crate) const TEMPLATES: [Template; 17] = [
+pub(crate) const TEMPLATES: [Template; 18] = [
     template!("shared/markers"),
     template!("shared/prologue"),
     template!("shared/edges"),
+    template!("shared/neighbours"),
     template!("shared/bounded_walk"),
     template!("shared/sentinels"),
     template!("shared/counter_names"),

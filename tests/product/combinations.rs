@@ -23,7 +23,7 @@ fn classes<'r>(registry: &'r Registry, axis: &'r str) -> Vec<Vec<&'r Row>> {
         (provides, row.implies.clone(), requires, conditions, row.extra_words.len())
     };
     let mut classes: Vec<Vec<&Row>> = Vec::new();
-    for row in registry.rows_of(axis).filter(|row| row.key != Registry::CLOSURE) {
+    for row in registry.rows_of(axis).filter(|row| !Registry::is_of_closures(row)) {
         match classes.iter_mut().find(|class| capabilities(class[0]) == capabilities(row)) {
             Some(class) => class.push(row),
             None => classes.push(vec![row]),

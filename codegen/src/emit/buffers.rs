@@ -38,7 +38,7 @@ pub(super) fn signatures(plan: &Plan, planned: &PlannedResource, access: Access)
 
 fn is_buffer(resource: &Resource, usage: &Use) -> bool {
     let in_shader = !matches!(usage.access, Access::Attachment | Access::Sampled | Access::Indirect);
-    in_shader && !matches!(resource.element, Element::Texture(_))
+    in_shader && !matches!(resource.element, Element::Texture(_) | Element::Texels(_))
 }
 
 fn uniform_blocks(plan: &Plan, linking: &Linking) -> String {

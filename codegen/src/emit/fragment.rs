@@ -4,13 +4,13 @@
 use std::fmt::Write;
 
 use fragbuf_model::Format;
-use fragbuf_templates::vocabulary::TieBreak;
+use fragbuf_templates::vocabulary::{Pass, TieBreak};
 
-use super::resumable;
+use super::effect;
 use crate::Plan;
 use crate::layout::{Key, Layout, MemberSource, Word};
 
-pub(super) fn text(plan: &Plan) -> String {
+pub(super) fn text(plan: &Plan, pass: &Pass) -> String {
     let mut text = String::new();
     structs(plan, &mut text);
     pack(plan, &mut text);
@@ -19,7 +19,7 @@ pub(super) fn text(plan: &Plan) -> String {
     recolored(plan, &mut text);
     orders(plan, &mut text);
     admit(plan, &mut text);
-    resumable::text(plan, &mut text);
+    effect::text(plan, pass, &mut text);
     text
 }
 

@@ -2,7 +2,9 @@
 //! and textures. Any other statement belongs in a template.
 
 mod buffers;
+mod effect;
 mod fragment;
+mod lookups;
 mod resumable;
 mod surface;
 mod textures;
@@ -21,13 +23,14 @@ pub(crate) use user_buffers::user_buffers;
 pub(crate) fn sources(plan: &Plan, pass: &Pass, linking: &Linking, called: &[String]) -> Vec<Source> {
     let mut sources = vec![
         Source::generated("constants", constants(plan, pass)),
-        Source::generated("fragment", fragment::text(plan)),
+        Source::generated("fragment", fragment::text(plan, pass)),
     ];
     if pass.kind == Kind::Geometry {
         sources.push(Source::generated("surface", surface::text(plan, linking)));
     }
     sources.push(Source::generated("buffers", buffers::text(plan, pass, linking, called)));
     sources.push(Source::generated("textures", textures::text(plan, pass, linking)));
+    sources.push(Source::generated("lookups", lookups::text(plan, pass, linking)));
     for function in plan.variant.helpers.iter().chain(closures(plan)) {
         sources.push(Source::user(function));
     }
@@ -40,7 +43,8 @@ fn closures(plan: &Plan) -> impl Iterator<Item = &fragbuf_model::UserFunction> {
     let parts = resumable::interrupted(plan);
     let whole = variant.resolve.iter().filter(move |_| parts.is_none());
     let parts = parts.into_iter().flat_map(|parts| parts.parts());
-    variant.criterion.iter().chain(&variant.constraints).chain(whole).chain(parts)
+    let images = variant.images.iter().map(|image| &image.function);
+    variant.criterion.iter().chain(&variant.constraints).chain(images).chain(&variant.between).chain(whole).chain(parts)
 }
 
 /// Generates the constants of the pass, and those of the plan that the pass does not replace.

@@ -1,4 +1,4 @@
-//! Generates how a closure of the effect is called: at once, or by its parts, where peeling passes fragments on in several iterations.
+//! Generates how a closure of the effect is called by its parts, where peeling passes fragments on in several iterations.
 
 use std::fmt::Write;
 
@@ -15,18 +15,8 @@ pub(super) fn interrupted(plan: &Plan) -> Option<&Resumable> {
     plan.variant.resolve.as_ref().filter(|_| is_interrupted)?.resumable()
 }
 
-/// Generates the functions of the effect's contract.
-pub(super) fn text(plan: &Plan, text: &mut String) {
-    match (&plan.variant.resolve, interrupted(plan)) {
-        (None, _) => {}
-        (Some(whole), None) => {
-            let _ = writeln!(text, "fn resolve_layers() -> vec4<f32> {{\n    return {}();\n}}", whole.name);
-        }
-        (Some(_), Some(parts)) => in_parts(parts, text),
-    }
-}
-
-fn in_parts(parts: &Resumable, text: &mut String) {
+/// Generates the functions of the effect's contract that call the parts.
+pub(super) fn text(parts: &Resumable, text: &mut String) {
     let [begin, advance, end] = parts.parts().map(|part| &part.name);
     let [not_begun, in_loop, after_loop, returned] =
         [Progress::NotBegun, Progress::InLoop, Progress::AfterLoop, Progress::Returned].map(Progress::wgsl);

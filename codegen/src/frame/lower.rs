@@ -6,7 +6,7 @@
 
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    BindingTime, Element, Formula, Host, Kind, Objects, Pass, Repeat, Setter, Step, Until, Words,
+    BindingTime, Formula, Host, Kind, Objects, Pass, Repeat, Setter, Step, Until, Words,
 };
 
 use super::{Action, Command, Decision, Loop, LoopId, LoopUntil, LoweredFrame, Parity, PassId, PlannedPass, Range};
@@ -231,7 +231,7 @@ impl LoweringContext<'_> {
 
     /// Returns the buffer of a name.
     fn buffer(&self, name: &str) -> Result<ResourceId, String> {
-        let is_texture = |id: &ResourceId| matches!(self.resources[id.0].resource.element, Element::Texture(_));
+        let is_texture = |id: &ResourceId| self.resources[id.0].is_texture();
         match self.resources(name)?.as_slice() {
             [one] if !is_texture(one) => Ok(*one),
             _ => Err(format!("a step reads `{name}`, which is not one buffer")),

@@ -60,6 +60,7 @@ fn resource(planned: &PlannedResource) -> String {
     let resource = &planned.resource;
     let element = match resource.element {
         Element::Texture(format) => format!("texture {}", kebab_case(&format)),
+        Element::Texels(dimension) => format!("texture {}", dimension.keyword()),
         element => kebab_case(&element),
     };
     let index: String = resource.extents.iter().map(|e| format!("[{} < {}]", e.name, e.length)).collect();

@@ -1,8 +1,11 @@
 //! Applies the edits of rows to the steps of a plan.
 
+use fragbuf_model::Variant;
 use fragbuf_templates::vocabulary::{
     Access, DepthState, Edit, Formula, Kind, Objects, Pass, Repeat, Resource, Split, Step, Use,
 };
+
+use super::described;
 
 /// Applies one edit. Fails if it names a pass that the steps do not have, or if a formula has no value.
 pub(super) fn apply(
@@ -10,6 +13,7 @@ pub(super) fn apply(
     steps: &mut Vec<Step>,
     resources: &mut Vec<Resource>,
     constants: &[(String, u32)],
+    variant: &Variant,
 ) -> Result<(), String> {
     match edit {
         Edit::First(new) => {
@@ -31,6 +35,14 @@ pub(super) fn apply(
         }
         Edit::AddUse(name, usage) => change(steps, name, &|pass| pass.uses.push(usage.clone())),
         Edit::DrawVisible(query) => draw_visible(steps, query),
+        Edit::Images(name) => {
+            let effect = steps.iter().find_map(|step| match step {
+                Step::Pass(pass) if pass.name == *name => Some(pass.clone()),
+                _ => None,
+            });
+            let effect = effect.ok_or_else(|| unknown(name))?;
+            insert(steps, name, &described::images(variant, &effect), 0)
+        }
         Edit::Repeat(last, repeat) => repeat_to(steps, last, repeat),
         Edit::Samples(samples) => {
             for_each_pass(steps, &mut |pass| {

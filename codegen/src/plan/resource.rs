@@ -22,7 +22,17 @@ pub struct PlannedResource {
 impl PlannedResource {
     /// Tests whether it is an external texture: the caller owns its memory and writes it.
     pub fn is_external(&self) -> bool {
-        self.resource.init == Init::External && matches!(self.resource.element, Element::Texture(_))
+        self.resource.init == Init::External && self.is_texture()
+    }
+
+    /// Tests whether it is a texture, not a buffer.
+    pub fn is_texture(&self) -> bool {
+        matches!(self.resource.element, Element::Texture(_) | Element::Texels(_))
+    }
+
+    /// Tests whether it is a texture of the description, which has a size of its own.
+    pub fn is_of_description(&self) -> bool {
+        matches!(self.resource.element, Element::Texels(_))
     }
 
     /// Tests whether it is the external depth buffer of opaque surfaces.
@@ -59,7 +69,7 @@ pub struct Part {
 pub(super) fn size(resource: &Resource) -> Result<Formula, FormulaError> {
     let mut factors: Vec<Formula> = resource.extents.iter().map(|extent| extent.length.clone()).collect();
     match resource.element {
-        Element::Word => {}
+        Element::Word | Element::Texels(_) => {}
         Element::Word64 => factors.push("2".into()),
         Element::Entry => factors.push("entry_words".into()),
         Element::Value => factors.push("value_words".into()),

@@ -16,7 +16,7 @@ pub(super) type PartOfResource = (Resource, Option<Part>);
 pub(super) fn split(resources: Vec<Resource>, steps: &mut [Step], layout: &Layout) -> Vec<PartOfResource> {
     let mut all: Vec<PartOfResource> = resources.into_iter().flat_map(|resource| textures(resource, layout)).collect();
     for_each_pass(steps, &mut |pass| name_textures(pass, &all));
-    all.sort_by_key(|(resource, _)| matches!(resource.element, Element::Texture(_)));
+    all.sort_by_key(|(resource, _)| matches!(resource.element, Element::Texture(_) | Element::Texels(_)));
     all
 }
 

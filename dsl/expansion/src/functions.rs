@@ -10,6 +10,7 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use quote::{format_ident, quote};
 
 use crate::module_source::{Bodies, ModuleSource};
+use crate::textures::has_textures;
 
 /// Returns the functions over references and the module `functions`.
 pub(crate) fn functions(source: &ModuleSource) -> TokenStream {
@@ -21,10 +22,16 @@ pub(crate) fn functions(source: &ModuleSource) -> TokenStream {
     let by_reference = functions().map(|(_, one)| by_reference(one, source));
     let by_value = functions().map(|(_, one)| by_value(one, source));
     let serving = &source.input.serving;
+    // With textures, the uniforms and the textures are one parameter.
+    let uniforms = match has_textures(source.draft) {
+        true => quote! { Inputs as Uniforms },
+        false => quote! { Uniforms },
+    };
     let module = quote! {
         /// The functions as the user wrote them; parameters and results are passed by value, as in the language.
         pub mod functions {
-            use super::{Fragment, Uniforms};
+            use super::#uniforms;
+            use super::Fragment;
             use #serving::glam::swizzles::{Vec2Swizzles as _, Vec3Swizzles as _, Vec4Swizzles as _};
             use #serving::glam::{Vec2, Vec3, Vec4, vec2, vec3, vec4};
             // The module, for `f32::consts`; the primitive type stays in scope.
@@ -47,59 +54,98 @@ struct FunctionSignature {
     inner_name: proc_macro2::Ident,
     name: proc_macro2::Ident,
     about: &'static str,
-    /// The type of the first parameter in `functions`.
-    by_value: TokenStream,
-    /// The type of the first parameter of the function over references.
-    by_reference: TokenStream,
+    parameters: Vec<Parameter>,
     result: TokenStream,
+}
+
+/// A parameter before the uniforms.
+struct Parameter {
+    name: proc_macro2::Ident,
+    /// The type in `functions`.
+    by_value: TokenStream,
+    /// The type in the function over references.
+    by_reference: TokenStream,
+    /// The argument that the function over references passes on.
+    passed: TokenStream,
 }
 
 fn signature(role: &Role, source: &ModuleSource) -> Option<FunctionSignature> {
     let serving = &source.input.serving;
-    let fragment = (quote! { Fragment }, quote! { &Fragment });
-    let fragments = (quote! { #serving::Fragments<'_, Fragment> }, quote! { &[Fragment] });
-    let (inner_name, name, about, (by_value, by_reference), result) = match role {
+    let fragment = |name: &str| {
+        let name = format_ident!("{name}");
+        let passed = quote! { *#name };
+        Parameter { name, by_value: quote! { Fragment }, by_reference: quote! { &Fragment }, passed }
+    };
+    let fragments = || Parameter {
+        name: format_ident!("fragments"),
+        by_value: quote! { #serving::Fragments<'_, Fragment> },
+        by_reference: quote! { &[Fragment] },
+        passed: quote! { #serving::Fragments::new(fragments) },
+    };
+    let color = || quote! { #serving::glam::Vec4 };
+    let (inner_name, name, about, parameters, result) = match role {
         Role::Criterion => {
             let result = quote! { ::core::primitive::f32 };
             let about = "The criterion: the fragment with the greatest value is the worst.";
-            (format_ident!("criterion"), format_ident!("criterion"), about, fragment, result)
+            (format_ident!("criterion"), format_ident!("criterion"), about, vec![fragment("fragment")], result)
         }
         Role::Constraint(index) => {
             let result = quote! { ::core::primitive::bool };
             let about = "Whether a fragment meets this constraint.";
-            (format_ident!("admit_{index}"), format_ident!("constraint_{index}"), about, fragment, result)
+            (
+                format_ident!("admit_{index}"),
+                format_ident!("constraint_{index}"),
+                about,
+                vec![fragment("fragment")],
+                result,
+            )
         }
         Role::Resolve => {
-            let result = quote! { #serving::glam::Vec4 };
             let about = "The result of a pixel from its kept fragments, in the given order.";
-            (format_ident!("resolve"), format_ident!("resolve"), about, fragments, result)
+            (format_ident!("resolve"), format_ident!("resolve"), about, vec![fragments()], color())
+        }
+        Role::Between => {
+            let about = "The premultiplied colour from a fragment to the next, `gap` behind it in depth.";
+            let float = quote! { ::core::primitive::f32 };
+            let name = format_ident!("gap");
+            let gap = Parameter { by_value: float.clone(), by_reference: float, passed: quote! { gap }, name };
+            let parameters = vec![fragment("front"), fragment("back"), gap];
+            (format_ident!("between"), format_ident!("between"), about, parameters, color())
+        }
+        Role::Image(image) => {
+            let about = "The value of an image at a pixel, from its kept fragments, in the given order.";
+            let name = format_ident!("image_{image}");
+            (name.clone(), name, about, vec![fragments()], color())
         }
         Role::Helper(_) => return None,
     };
-    Some(FunctionSignature { inner_name, name, about, by_value, by_reference, result })
+    Some(FunctionSignature { inner_name, name, about, parameters, result })
 }
 
 fn by_reference(function: &FunctionTokens, source: &ModuleSource) -> TokenStream {
     let Some(signature) = signature(&function.role, source) else { return TokenStream::new() };
-    let FunctionSignature { inner_name, name, about, by_reference, result, .. } = signature;
-    let serving = &source.input.serving;
-    let first = match function.role {
-        Role::Resolve => quote! { #serving::Fragments::new(first) },
-        _ => quote! { *first },
+    let FunctionSignature { inner_name, name, about, parameters, result } = signature;
+    let passed = parameters.iter().map(|parameter| &parameter.passed);
+    let names = parameters.iter().map(|parameter| &parameter.name);
+    let types = parameters.iter().map(|parameter| &parameter.by_reference);
+    let (inputs, textures) = match has_textures(source.draft) {
+        true => (quote! { Inputs::new(*uniforms, *textures) }, quote! { , textures: &Textures<'_> }),
+        false => (quote! { *uniforms }, TokenStream::new()),
     };
-    let call = quote! { functions::#inner_name(#first, *uniforms) };
+    let unused = parameters.iter().map(|parameter| &parameter.name);
+    let call = quote! { functions::#inner_name(#(#passed,)* #inputs) };
     let body = match source.bodies {
         Bodies::Compiled => call,
         Bodies::ForEditors => quote! {
             #[cfg(rust_analyzer)]
             { return #call; }
             #[cfg(not(rust_analyzer))]
-            { let _ = (first, uniforms); ::core::unreachable!() }
+            { let _ = (#(#unused,)* uniforms); ::core::unreachable!() }
         },
     };
     quote! {
         #[doc = #about]
-        pub fn #name(first: #by_reference, uniforms: &Uniforms) -> #result { #body }
+        pub fn #name(#(#names: #types,)* uniforms: &Uniforms #textures) -> #result { #body }
     }
 }
 
@@ -111,13 +157,16 @@ fn by_value(function: &FunctionTokens, source: &ModuleSource) -> TokenStream {
             pub #tokens
         };
     };
-    let FunctionSignature { inner_name, about, by_value, result, .. } = signature;
+    let FunctionSignature { inner_name, about, parameters: given, result, .. } = signature;
     let Closure { parameters, body } = Closure::of(&function.tokens);
-    let mut names = parameters.into_iter().filter(|name| !name.is_empty()).chain([quote! { _ }, quote! { _ }]);
-    let (first, second) = (names.next(), names.next());
+    let mut names = parameters.into_iter().filter(|name| !name.is_empty()).chain(std::iter::repeat(quote! { _ }));
+    let first =
+        given.iter().map(|parameter| &parameter.by_value).zip(names.by_ref()).map(|(ty, name)| quote! { #name: #ty });
+    let first: Vec<TokenStream> = first.collect();
+    let uniforms = names.next();
     quote! {
         #[doc = #about]
-        pub fn #inner_name(#first: #by_value, #second: Uniforms) -> #result #body
+        pub fn #inner_name(#(#first,)* #uniforms: Uniforms) -> #result #body
     }
 }
 

@@ -12,6 +12,7 @@ mod module_source;
 mod names;
 mod span;
 mod structs;
+mod textures;
 
 use fragbuf_model::Draft;
 use fragbuf_syntax::{CapturedTokens, FunctionTokens, read_tokens};

@@ -8,7 +8,7 @@ use quote::quote;
 
 use crate::macro_input::MacroInput;
 use crate::module_source::{Bodies, ModuleSource};
-use crate::{functions, names, span, structs};
+use crate::{functions, names, span, structs, textures};
 
 /// Returns the module.
 pub(crate) fn module(source: &ModuleSource) -> TokenStream {
@@ -22,6 +22,7 @@ pub(crate) fn module(source: &ModuleSource) -> TokenStream {
         documentation.clone()
     };
     let (fragment, uniforms) = (structs::fragment(source), structs::uniforms(source));
+    let textures = textures::textures(source);
     let functions = functions::functions(source);
     let description = &source.description;
     // Binding numbers follow from the plan, which the language does not have: a serving crate that has it emits them.
@@ -32,6 +33,7 @@ pub(crate) fn module(source: &ModuleSource) -> TokenStream {
         #visibility mod #name {
             #fragment
             #uniforms
+            #textures
             #functions
             #bindings
 

@@ -113,7 +113,7 @@ fn derives() -> TokenStream {
 }
 
 /// Returns the identifier of a field, with the span of the user's token, so that editors find it there.
-fn field(name: Spanned<String>, source: &ModuleSource) -> Ident {
+pub(crate) fn field(name: Spanned<String>, source: &ModuleSource) -> Ident {
     names::identifier(&name.value, span::token_span(&name.span, &source.input.tokens))
 }
 

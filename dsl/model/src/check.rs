@@ -33,6 +33,17 @@ pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics>
     if let Some(k) = keep {
         option_minimums::check(draft, &choices, k, &mut diagnostics);
     }
+    if let (Some(between), Some(image)) = (&draft.between, draft.images.first()) {
+        diagnostics.push(
+            Diagnostic::new(
+                codes::UNSUPPORTED,
+                &between.span,
+                "the effect `between` is computed while fragments are composited, and cannot read images",
+                format!("write the effect as `resolve |fragments, u| …`, or remove `image {}`", image.name.value),
+            )
+            .label(&image.name.span, "the image"),
+        );
+    }
     extra_words::check(&attributes, &choices, &mut diagnostics);
     let criterion = draft.keep.as_ref().and_then(|keep| keep.criterion.as_ref());
     // With a missing storage, an unknown choice or a part with errors, every capability would be reported as missing.
@@ -49,11 +60,14 @@ pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics>
         technique: technique.map(|technique| technique.key.clone()),
         attributes,
         uniforms: draft.uniforms.clone(),
+        textures: draft.textures.clone(),
         keep,
         keep_span: draft.keep.as_ref().map(|keep| keep.count.span.clone()),
         criterion: criterion.cloned(),
         constraints: draft.constraints.clone(),
         resolve: draft.resolve.clone(),
+        between: draft.between.clone(),
+        images: draft.images.clone(),
         helpers: draft.helpers.clone(),
         choices,
         warnings,

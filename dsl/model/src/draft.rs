@@ -5,7 +5,7 @@
 
 use crate::attribute::Attribute;
 use crate::resumable::{Resumable, Uninterruptible};
-use crate::{Diagnostics, SourceSpan, Spanned};
+use crate::{Diagnostics, Image, SourceSpan, Spanned, Texture, Uniform};
 
 /// The description of one fragment buffer, unchecked.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +18,8 @@ pub struct Draft {
     pub attributes: Vec<Attribute>,
     /// Values that closures read, constant during a pass.
     pub uniforms: Vec<Uniform>,
+    /// Textures that closures read, supplied by the caller.
+    pub textures: Vec<Texture>,
     /// The number of kept fragments per pixel, and the criterion. Absent: the preset's.
     pub keep: Option<Keep>,
     /// A fragment is admitted iff all of these return true.
@@ -26,6 +28,10 @@ pub struct Draft {
     pub choices: Vec<Choice>,
     /// The effect, as a closure over the kept fragments. A named effect is a choice on the axis `resolve`.
     pub resolve: Option<UserFunction>,
+    /// The effect, as a closure over two neighbouring fragments.
+    pub between: Option<UserFunction>,
+    /// Images that are computed before the effect, in the user's order.
+    pub images: Vec<Image>,
     /// Helper functions that closures call, in the user's order.
     pub helpers: Vec<UserFunction>,
     /// Names that no closure uses, in the order of the source.
@@ -48,7 +54,7 @@ pub struct Incomplete {
     pub preset: bool,
     /// The payload.
     pub attributes: bool,
-    /// The uniforms.
+    /// The uniforms, textures or images.
     pub uniforms: bool,
     /// The number of kept fragments, or the criterion.
     pub keep: bool,
@@ -118,10 +124,13 @@ impl Draft {
             preset: None,
             attributes: Vec::new(),
             uniforms: Vec::new(),
+            textures: Vec::new(),
             keep: None,
             constraints: Vec::new(),
             choices: Vec::new(),
             resolve: None,
+            between: None,
+            images: Vec::new(),
             helpers: Vec::new(),
             unused: Vec::new(),
             effect: None,
@@ -216,72 +225,6 @@ impl Format {
     }
 }
 
-/// One value of the `uniform { }` block.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Uniform {
-    /// The name as the user wrote it.
-    pub name: Spanned<String>,
-    /// Its type.
-    pub kind: Spanned<UniformType>,
-}
-
-/// The types a uniform may have.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum UniformType {
-    /// `f32`
-    F32,
-    /// `u32`
-    U32,
-    /// `i32`
-    I32,
-    /// `vec2`
-    Vec2,
-    /// `vec3`
-    Vec3,
-    /// `vec4`
-    Vec4,
-}
-
-impl UniformType {
-    /// Every type, in the order in which the documentation lists them.
-    pub const ALL: [UniformType; 6] =
-        [UniformType::F32, UniformType::U32, UniformType::I32, UniformType::Vec2, UniformType::Vec3, UniformType::Vec4];
-
-    /// Returns the keyword of the language.
-    pub fn keyword(self) -> &'static str {
-        match self {
-            UniformType::F32 => "f32",
-            UniformType::U32 => "u32",
-            UniformType::I32 => "i32",
-            UniformType::Vec2 => "vec2",
-            UniformType::Vec3 => "vec3",
-            UniformType::Vec4 => "vec4",
-        }
-    }
-
-    /// Returns the number of its components.
-    pub fn components(self) -> u32 {
-        match self {
-            UniformType::F32 | UniformType::U32 | UniformType::I32 => 1,
-            UniformType::Vec2 => 2,
-            UniformType::Vec3 => 3,
-            UniformType::Vec4 => 4,
-        }
-    }
-
-    /// Returns the WGSL type.
-    pub fn wgsl_type(self) -> &'static str {
-        match self {
-            UniformType::F32 => "f32",
-            UniformType::U32 => "u32",
-            UniformType::I32 => "i32",
-            UniformType::Vec2 => "vec2<f32>",
-            UniformType::Vec3 => "vec3<f32>",
-            UniformType::Vec4 => "vec4<f32>",
-        }
-    }
-}
-
 /// The `keep` line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Keep {
@@ -355,7 +298,7 @@ impl From<&str> for OptionValue {
 /// A closure or helper function of the user, type-checked and lowered to WGSL.
 #[derive(Clone, Debug)]
 pub struct UserFunction {
-    /// Its name in WGSL: `user_criterion`, `user_admit_0`, `user_resolve`, `user_<helper>`.
+    /// Its name in WGSL: `user_criterion`, `user_admit_0`, `user_resolve`, `user_between`, `user_image_<name>`, `user_<helper>`.
     pub name: String,
     /// The span of its first token.
     pub span: SourceSpan,
@@ -365,7 +308,7 @@ pub struct UserFunction {
     pub wgsl: String,
     /// The source span of each line of `wgsl`.
     pub lines: Vec<SourceSpan>,
-    /// The attributes and uniforms that it reads.
+    /// What it reads.
     pub reads: Reads,
     /// Of an effect: its parts, if it can be interrupted between two fragments.
     pub resumable: Option<Result<Box<Resumable>, Uninterruptible>>,
@@ -377,11 +320,15 @@ impl PartialEq for UserFunction {
     }
 }
 
-/// The attributes and uniforms that a user function and its helpers read: the user's names, in order of first use.
+/// What a user function and its helpers read: the user's names, in order of first use.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Reads {
     /// Attributes of fragments.
     pub attributes: Vec<String>,
     /// Uniforms.
     pub uniforms: Vec<String>,
+    /// Textures.
+    pub textures: Vec<String>,
+    /// Images.
+    pub images: Vec<String>,
 }

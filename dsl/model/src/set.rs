@@ -128,7 +128,12 @@ impl Draft {
     /// Whether a closure was type-checked against the current attributes.
     fn has_closures(&self) -> bool {
         let criterion = self.keep.as_ref().is_some_and(|keep| keep.criterion.is_some());
-        criterion || !self.constraints.is_empty() || self.resolve.is_some()
+        criterion || !self.constraints.is_empty() || self.has_effect() || !self.images.is_empty()
+    }
+
+    /// Whether a closure is the effect.
+    fn has_effect(&self) -> bool {
+        self.resolve.is_some() || self.between.is_some()
     }
 
     fn set_axis(&mut self, axis: &str, value: &str, span: &SourceSpan) {
@@ -146,6 +151,7 @@ impl Draft {
     pub fn choose(&mut self, choice: Choice) {
         if choice.axis.value == fragbuf_templates::Registry::CLOSURE_AXIS {
             self.resolve = None;
+            self.between = None;
         }
         self.choices.retain(|other| other.axis.value != choice.axis.value);
         self.choices.push(choice);

@@ -9,7 +9,7 @@ use fragbuf_templates::vocabulary::{
 };
 
 use crate::check::description_values;
-use crate::{Attribute, Diagnostics, SourceSpan, Spanned, Uniform, UserFunction};
+use crate::{Attribute, Diagnostics, Image, SourceSpan, Spanned, Texture, Uniform, UserFunction};
 
 /// A checked fragment buffer.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +26,8 @@ pub struct Description {
     pub attributes: Vec<Attribute>,
     /// Values that are constant during a pass.
     pub uniforms: Vec<Uniform>,
+    /// Textures that the caller supplies.
+    pub textures: Vec<Texture>,
     /// The number of fragments that a pixel keeps; `None`: all.
     pub keep: Option<u32>,
     /// The span of this number, if the description gives it.
@@ -36,6 +38,10 @@ pub struct Description {
     pub constraints: Vec<UserFunction>,
     /// The effect as a closure; `None`: the effect chosen on the axis `resolve`.
     pub resolve: Option<UserFunction>,
+    /// The effect as a closure over two neighbouring fragments.
+    pub between: Option<UserFunction>,
+    /// Images that are computed before the effect, in order.
+    pub images: Vec<Image>,
     /// Functions that the closures call.
     pub helpers: Vec<UserFunction>,
     /// One entry per axis, in the order of the axes.

@@ -15,7 +15,7 @@ use std::panic::Location;
 
 pub use crate::{closure, function};
 pub use choice::{Value, value};
-pub use fragbuf_model::{Format, OptionValue, UniformType};
+pub use fragbuf_model::{Format, OptionValue, TextureDimension, UniformType};
 pub use function::{Closure, Function};
 
 /// A description that is built part by part. As in a file, only the order of attributes, of uniforms and of constraints
@@ -54,6 +54,13 @@ impl Buffer {
         self.with(Part::Uniform(name, kind))
     }
 
+    /// Adds a texture to `texture { }`, which the caller supplies.
+    #[track_caller]
+    pub fn texture(self, name: impl Into<String>, dimension: TextureDimension) -> Self {
+        let name = at_caller(name.into());
+        self.with(Part::Texture(name, dimension))
+    }
+
     /// Sets `keep 8;`, or `keep all;` with [`KeepCount::All`].
     #[track_caller]
     pub fn keep(self, count: impl Into<KeepCount>) -> Self {
@@ -86,6 +93,20 @@ impl Buffer {
     pub fn resolve(self, effect: Closure) -> Self {
         let span = at_caller(()).span;
         self.with(Part::Resolve(effect.0, span))
+    }
+
+    /// Sets `between |front, back, gap, u| { … }`: the effect as the value of two neighbouring fragments.
+    #[track_caller]
+    pub fn between(self, effect: Closure) -> Self {
+        let span = at_caller(()).span;
+        self.with(Part::Between(effect.0, span))
+    }
+
+    /// Adds `image name |fragments, u| { … }`, which later images and the effect can read.
+    #[track_caller]
+    pub fn image(self, name: impl Into<String>, image: Closure) -> Self {
+        let name = at_caller(name.into());
+        self.with(Part::Image(name, image.0))
     }
 
     /// Adds `fn name(…) -> … { … }`, which closures and other helpers can call.

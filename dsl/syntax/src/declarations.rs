@@ -1,9 +1,9 @@
-//! The declarations of attributes and uniforms.
+//! The declarations of attributes, uniforms and textures.
 //!
-//! Input: names and type names as written. Output: attributes and uniforms with unique names. Formats and types are those
+//! Input: names and type names as written. Output: attributes, uniforms and textures with unique names. Formats and types are those
 //! of `fragbuf_model`.
 
-use fragbuf_model::{Attribute, Diagnostic, Format, Spanned, Uniform, UniformType, codes};
+use fragbuf_model::{Attribute, Diagnostic, Format, Spanned, Texture, TextureDimension, Uniform, UniformType, codes};
 
 use crate::foreign_names::{self, Replacement};
 use crate::names;
@@ -30,6 +30,14 @@ pub(crate) fn uniforms(declarations: Vec<Declaration>, report: &mut Report) -> (
     let what = Declared { name: "uniform", foreign: foreign_names::uniform_type };
     let (known, invalid) = resolve_types(declarations, &what, &types, report);
     (known.into_iter().map(|(name, kind)| Uniform { name, kind }).collect(), invalid)
+}
+
+/// Returns the textures, and the names of those with an unknown dimension.
+pub(crate) fn textures(declarations: Vec<Declaration>, report: &mut Report) -> (Vec<Texture>, Vec<String>) {
+    let dimensions = TextureDimension::ALL.map(|dimension| (dimension.keyword(), dimension));
+    let what = Declared { name: "texture", foreign: foreign_names::texture_dimension };
+    let (known, invalid) = resolve_types(declarations, &what, &dimensions, report);
+    (known.into_iter().map(|(name, dimension)| Texture { name, dimension }).collect(), invalid)
 }
 
 /// Whether a name of a type of another language is more often that of an attribute.

@@ -3,7 +3,7 @@
 //! Input: a description as written. Output: a [`Draft`] in which every function is type-checked and lowered, and lists
 //! what it reads, including through helpers. A function with an error is reported and omitted.
 
-use fragbuf_model::{Draft, Format, Keep, Resumable, Spanned, Unused, UserFunction, codes};
+use fragbuf_model::{Draft, Format, Image, Keep, Resumable, Spanned, Unused, UserFunction, codes};
 
 use crate::check;
 use crate::environment::{Environment, Signature};
@@ -14,16 +14,17 @@ use crate::reads;
 use crate::report::Report;
 use crate::suspicious;
 use crate::tree::Function;
-use crate::types::Type;
+use crate::types::{Shape, Type};
 
 /// Returns the draft of a description: checks and lowers all functions.
 pub(crate) fn build(description: RawDescription, report: &mut Report) -> Draft {
     let RawDescription { name, preset, items } = description;
     let environment = environment(&items, report);
-    let Items { attributes, uniforms, keep, choices, functions, invalid_attributes, effect, mut incomplete, .. } =
+    let Items { attributes, uniforms, textures, images, keep, choices, functions, invalid_attributes, effect, .. } =
         items;
-    let of_effect =
-        functions.iter().find(|function| function.role == Role::Resolve).map(|function| function.span.clone());
+    let mut incomplete = items.incomplete;
+    let is_effect = |role: &Role| matches!(role, Role::Resolve | Role::Between);
+    let of_effect = functions.iter().find(|function| is_effect(&function.role)).map(|function| function.span.clone());
     // An attribute of unknown format provides unknown capabilities.
     incomplete.attributes |= !invalid_attributes.is_empty();
     let checked: Vec<(Role, Option<Function>)> =
@@ -31,8 +32,9 @@ pub(crate) fn build(description: RawDescription, report: &mut Report) -> Draft {
     let helpers: Vec<Option<&Function>> = helper_functions(&checked, &environment);
     reads::reject_recursion(&helpers, report);
     let keep = keep.map(|(count, _)| Keep { count, criterion: None });
-    let mut draft = Draft { preset, attributes, uniforms, keep, choices, ..Draft::empty(name) };
-    incomplete.resolve |= checked.iter().any(|(role, function)| *role == Role::Resolve && function.is_none());
+    let mut draft = Draft { preset, attributes, uniforms, textures, keep, choices, ..Draft::empty(name) };
+    incomplete.resolve |= checked.iter().any(|(role, function)| is_effect(role) && function.is_none());
+    incomplete.uniforms |= checked.iter().any(|(role, function)| matches!(role, Role::Image(_)) && function.is_none());
     draft.incomplete = incomplete;
     draft.effect = of_effect.or(effect).map(|span| Spanned::new((), span));
     draft.unused = unused(&checked, &environment, &helpers);
@@ -53,7 +55,8 @@ pub(crate) fn build(description: RawDescription, report: &mut Report) -> Draft {
             Role::Resolve => with_parts(user, function, &environment),
             _ => user,
         };
-        add_function(&mut draft, role, user);
+        reject_unknown_images(&user, role, &draft, report);
+        add_function(&mut draft, role, user, &images);
     }
     draft
 }
@@ -92,7 +95,36 @@ fn with_parts(user: UserFunction, function: &Function, environment: &Environment
     UserFunction { resumable: Some(resumable), ..user }
 }
 
-fn add_function(draft: &mut Draft, role: &Role, function: UserFunction) {
+/// Reports images that a function reads before they are computed. Only images and `resolve` read images.
+fn reject_unknown_images(function: &UserFunction, role: &Role, draft: &Draft, report: &mut Report) {
+    if matches!(role, Role::Helper(_)) {
+        return;
+    }
+    let is_computed = |name: &String| draft.images.iter().any(|image| image.name.value == *name);
+    for name in function.reads.images.iter().filter(|name| !role.reads_list() || !is_computed(name)) {
+        let (message, help) = match role {
+            Role::Image(own) if own == name => {
+                (format!("the image `{name}` reads itself"), "an image can read the images before it".to_owned())
+            }
+            Role::Image(own) => (
+                format!("`{own}` reads the image `{name}`, which is computed later"),
+                format!("move `image {name}` before `image {own}`"),
+            ),
+            Role::Resolve if draft.incomplete.uniforms => return,
+            Role::Resolve => (
+                format!("the effect reads the image `{name}`, which is computed later"),
+                format!("move `image {name}` before `resolve`"),
+            ),
+            _ => (
+                format!("this closure reads the image `{name}`, which is computed from kept fragments"),
+                "only `resolve` and later images can read an image".to_owned(),
+            ),
+        };
+        report.error(codes::UNSUPPORTED, &function.span, message, help);
+    }
+}
+
+fn add_function(draft: &mut Draft, role: &Role, function: UserFunction, images: &[Spanned<String>]) {
     match role {
         Role::Criterion => {
             if let Some(keep) = &mut draft.keep {
@@ -101,6 +133,11 @@ fn add_function(draft: &mut Draft, role: &Role, function: UserFunction) {
         }
         Role::Constraint(_) => draft.constraints.push(function),
         Role::Resolve => draft.resolve = Some(function),
+        Role::Between => draft.between = Some(function),
+        Role::Image(name) => {
+            let name = images.iter().find(|image| image.value == *name).cloned();
+            draft.images.extend(name.map(|name| Image { name, function }));
+        }
         Role::Helper(_) => draft.helpers.push(function),
     }
 }
@@ -120,6 +157,10 @@ fn environment(items: &Items, report: &mut Report) -> Environment {
     for uniform in &items.uniforms {
         uniforms.push((uniform.name.value.clone(), Type::of_uniform(uniform.kind.value)));
     }
+    for texture in &items.textures {
+        uniforms.push((texture.name.value.clone(), Type::Texture(Shape::of(texture.dimension.value))));
+    }
+    uniforms.extend(items.images.iter().map(|name| (name.value.clone(), Type::Texture(Shape::Image))));
     let mut helpers = Vec::new();
     for raw in &items.functions {
         if let Role::Helper(name) = &raw.role {

@@ -85,6 +85,22 @@ pub(crate) fn uniform_type(name: &str) -> Option<Replacement> {
     }
 }
 
+/// Returns what a `texture` block writes instead of a dimension.
+pub(crate) fn texture_dimension(name: &str) -> Option<Replacement> {
+    let lower = name.to_ascii_lowercase();
+    match lower.trim_end_matches("<f32>") {
+        "d2" | "sampler2d" | "texture2d" | "texture_2d" | "image2d" | "2" => Replacement::by("2d", ""),
+        "d3" | "sampler3d" | "texture3d" | "texture_3d" | "image3d" | "3" => Replacement::by("3d", ""),
+        "1d" | "d1" | "sampler1d" | "texture1d" | "texture_1d" => {
+            Replacement::by("2d", " with a texture of one row, and sample it at `vec2(x, 0.5)`")
+        }
+        "cube" | "samplercube" | "texturecube" | "texture_cube" => {
+            Replacement::none("cube textures are not supported: use a `2d` texture with an octahedral map")
+        }
+        _ => None,
+    }
+}
+
 /// Returns what a closure writes instead of a call of a function.
 pub(crate) fn function(name: &str, given: &[Given]) -> Option<String> {
     if let Some(size) = vector_size(name) {
@@ -146,7 +162,7 @@ pub(crate) fn swizzle(name: &str) -> Option<String> {
 
 const DERIVATIVES: [&str; 8] = ["dFdx", "dFdy", "fwidth", "ddx", "ddy", "dpdx", "dpdy", "ddx_fine"];
 
-const TEXTURES: &str = "closures do not read textures: store the value in an attribute";
+const TEXTURES: &str = "declare `texture { lut: 2d }` in the buffer, and write `u.lut.sample(vec2(x, y))`";
 
 /// The kinds of types of shading languages that are not vectors of `f32`.
 enum Number {

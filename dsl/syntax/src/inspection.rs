@@ -14,7 +14,7 @@ use crate::{lexer, parse};
 pub const PLACEHOLDER: &str = "fragbuf_name_being_typed";
 
 /// The words that begin an item of a buffer, apart from the axes.
-pub const ITEMS: [&str; 6] = crate::grammar::KEYWORDS;
+pub const ITEMS: [&str; 9] = crate::grammar::KEYWORDS;
 
 /// The words that begin a statement or an expression of a function.
 pub const STATEMENTS: [&str; 10] =

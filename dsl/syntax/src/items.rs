@@ -3,7 +3,9 @@
 //! Input: items from the grammar or the builder, one at a time. Output: [`Items`] without duplicates; function bodies are
 //! not type-checked.
 
-use fragbuf_model::{Attribute, Choice, Diagnostic, Incomplete, KeepCount, SourceSpan, Spanned, Uniform, codes};
+use fragbuf_model::{
+    Attribute, Choice, Diagnostic, Incomplete, KeepCount, SourceSpan, Spanned, Texture, Uniform, codes,
+};
 
 use crate::declarations::{self, Declaration};
 use crate::raw_function::{FunctionTokens, RawFunction, Role};
@@ -21,9 +23,12 @@ pub(crate) struct RawDescription {
 pub(crate) struct Items {
     pub attributes: Vec<Attribute>,
     pub uniforms: Vec<Uniform>,
+    pub textures: Vec<Texture>,
+    /// The names of images, in the user's order.
+    pub images: Vec<Spanned<String>>,
     /// The names of attributes with an unknown format.
     pub invalid_attributes: Vec<String>,
-    /// The names of uniforms with an unknown type.
+    /// The names of uniforms with an unknown type, and of textures with an unknown dimension.
     pub invalid_uniforms: Vec<String>,
     /// The count of `keep`, and the span of the item.
     pub keep: Option<(Spanned<KeepCount>, SourceSpan)>,
@@ -40,6 +45,7 @@ pub(crate) struct Items {
     pub incomplete: Incomplete,
     fragment_block: Option<SourceSpan>,
     uniform_block: Option<SourceSpan>,
+    texture_block: Option<SourceSpan>,
     constraints: usize,
 }
 
@@ -56,8 +62,49 @@ impl Items {
     pub(crate) fn add_uniforms(&mut self, rows: Vec<Declaration>, span: &SourceSpan, report: &mut Report) {
         let (uniforms, invalid) = declarations::uniforms(rows, report);
         if is_first(&mut self.uniform_block, span, "uniform", report) {
-            (self.uniforms, self.invalid_uniforms) = (uniforms, invalid);
+            self.uniforms = uniforms;
+            self.invalid_uniforms.extend(invalid);
+            self.reject_names_twice(report);
         }
+    }
+
+    /// Adds the block `texture`; a second block is an error.
+    pub(crate) fn add_textures(&mut self, rows: Vec<Declaration>, span: &SourceSpan, report: &mut Report) {
+        let (textures, invalid) = declarations::textures(rows, report);
+        if is_first(&mut self.texture_block, span, "texture", report) {
+            self.textures = textures;
+            self.invalid_uniforms.extend(invalid);
+            self.reject_names_twice(report);
+        }
+    }
+
+    /// Adds an image; its name must differ from those of uniforms, textures and other images, which closures read in the same way.
+    pub(crate) fn add_image(&mut self, name: Spanned<String>, function: RawFunction, report: &mut Report) {
+        self.images.push(name);
+        let count = report.count();
+        self.reject_names_twice(report);
+        if report.count() == count {
+            self.functions.push(function);
+        }
+    }
+
+    /// Reports a name that two of the uniforms, textures and images have, and removes the second.
+    fn reject_names_twice(&mut self, report: &mut Report) {
+        let mut seen: Vec<Spanned<String>> = self.uniforms.iter().map(|uniform| uniform.name.clone()).collect();
+        let mut is_new = |name: &Spanned<String>, what: &str| {
+            let first = seen.iter().find(|other| other.value == name.value).cloned();
+            match &first {
+                Some(first) => {
+                    let message = format!("duplicate name `{}`: closures read both as `u.{0}`", name.value);
+                    let help = format!("rename the {what}");
+                    report.push(Diagnostic::new(codes::DUPLICATE, &name.span, message, help).label(&first.span, FIRST));
+                }
+                None => seen.push(name.clone()),
+            }
+            first.is_none()
+        };
+        self.textures.retain(|texture| is_new(&texture.name, "texture"));
+        self.images.retain(|name| is_new(name, "image"));
     }
 
     /// Adds `keep`; a second one is an error.
@@ -83,10 +130,10 @@ impl Items {
         Role::Constraint(self.constraints - 1)
     }
 
-    /// Adds the closure of `resolve`; a second effect is an error.
+    /// Adds the closure of `resolve` or `between`; a second effect is an error.
     pub(crate) fn add_resolve(&mut self, function: RawFunction, span: &SourceSpan, report: &mut Report) {
         match self.resolve_span().or_else(|| self.choice_span("resolve")) {
-            Some(first) => report.push(duplicate("resolve", span, first)),
+            Some(first) => report.push(duplicate(function.role.rust_name(), span, first)),
             None => self.functions.push(function),
         }
     }
@@ -113,7 +160,8 @@ impl Items {
     }
 
     fn resolve_span(&self) -> Option<&SourceSpan> {
-        self.functions.iter().find(|function| function.role == Role::Resolve).map(|function| &function.span)
+        let is_effect = |function: &&RawFunction| matches!(function.role, Role::Resolve | Role::Between);
+        self.functions.iter().find(is_effect).map(|function| &function.span)
     }
 
     fn choice_span(&self, axis: &str) -> Option<&SourceSpan> {

@@ -3,7 +3,7 @@
 //! Input: [`Parts`], plain data with a span for each part. Output: the same [`Parsed`] as from the source of the same
 //! description: all front ends share the rules, the type checker and the lowering.
 
-use fragbuf_model::{Choice, Format, Incomplete, KeepCount, SourceSpan, Spanned, UniformType};
+use fragbuf_model::{Choice, Format, Incomplete, KeepCount, SourceSpan, Spanned, TextureDimension, UniformType};
 use proc_macro2::{Span, TokenStream};
 
 use crate::captured_tokens::CapturedTokens;
@@ -32,6 +32,8 @@ pub enum Part {
     Attribute(Spanned<String>, Format),
     /// A line of `uniform { }`.
     Uniform(Spanned<String>, UniformType),
+    /// A line of `texture { }`.
+    Texture(Spanned<String>, TextureDimension),
     /// `keep`, and the closure after `least`.
     Keep(Spanned<KeepCount>, Option<CapturedTokens>),
     /// The closure after `where`.
@@ -40,6 +42,10 @@ pub enum Part {
     Choice(Choice),
     /// The closure after `resolve`.
     Resolve(CapturedTokens, SourceSpan),
+    /// The closure after `between`.
+    Between(CapturedTokens, SourceSpan),
+    /// The name and the closure after `image`.
+    Image(Spanned<String>, CapturedTokens),
     /// A helper function.
     Helper(CapturedTokens),
 }
@@ -64,25 +70,27 @@ pub fn assemble(parts: &Parts) -> Parsed {
     invalid.into_iter().for_each(|error| report.push(error));
     let name = names::buffer(&parts.name, &mut report);
     let preset = parts.preset.as_ref().map(|preset| names::identifier(preset, &mut report));
-    let mut assembly = Assembly { items: Items::default(), attributes: Vec::new(), uniforms: Vec::new() };
+    let mut assembly = Assembly::default();
     for (part, tokens) in parts.items.iter().zip(tokens) {
         // An error is reported already; the other parts are still added.
         if assembly.add(part, tokens, &mut report).is_err() {
             assembly.items.incomplete = assembly.items.incomplete.or(incomplete(part));
         }
     }
-    let Assembly { mut items, attributes, uniforms } = assembly;
+    let Assembly { mut items, attributes, uniforms, textures } = assembly;
     items.add_attributes(attributes, &parts.name.span, &mut report);
     items.add_uniforms(uniforms, &parts.name.span, &mut report);
+    items.add_textures(textures, &parts.name.span, &mut report);
     let draft = draft::build(RawDescription { name, preset, items }, &mut report);
     Parsed { draft: Some(draft), diagnostics: report.finish() }
 }
 
 fn captured(part: &Part) -> Option<&CapturedTokens> {
     match part {
-        Part::Constraint(function) | Part::Resolve(function, _) | Part::Helper(function) => Some(function),
+        Part::Constraint(function) | Part::Helper(function) => Some(function),
+        Part::Resolve(function, _) | Part::Between(function, _) | Part::Image(_, function) => Some(function),
         Part::Keep(_, criterion) => criterion.as_ref(),
-        Part::Attribute(..) | Part::Uniform(..) | Part::Choice(_) => None,
+        Part::Attribute(..) | Part::Uniform(..) | Part::Texture(..) | Part::Choice(_) => None,
     }
 }
 
@@ -91,20 +99,22 @@ fn incomplete(part: &Part) -> Incomplete {
     let none = Incomplete::default();
     match part {
         Part::Attribute(..) => Incomplete { attributes: true, ..none },
-        Part::Uniform(..) => Incomplete { uniforms: true, ..none },
+        Part::Uniform(..) | Part::Texture(..) | Part::Image(..) => Incomplete { uniforms: true, ..none },
         Part::Keep(..) => Incomplete { keep: true, ..none },
         Part::Constraint(_) => none,
         Part::Choice(_) => Incomplete { choices: true, ..none },
-        Part::Resolve(..) => Incomplete { resolve: true, ..none },
+        Part::Resolve(..) | Part::Between(..) => Incomplete { resolve: true, ..none },
         Part::Helper(_) => Incomplete { helpers: true, ..none },
     }
 }
 
-/// The items so far, and the declarations of both blocks.
+/// The items so far, and the declarations of the blocks.
+#[derive(Default)]
 struct Assembly {
     items: Items,
     attributes: Vec<Declaration>,
     uniforms: Vec<Declaration>,
+    textures: Vec<Declaration>,
 }
 
 impl Assembly {
@@ -112,6 +122,7 @@ impl Assembly {
         match part {
             Part::Attribute(name, format) => self.attributes.push(declaration(name, format.keyword())),
             Part::Uniform(name, kind) => self.uniforms.push(declaration(name, kind.keyword())),
+            Part::Texture(name, dimension) => self.textures.push(declaration(name, dimension.keyword())),
             Part::Choice(choice) => {
                 let choice = grammar::choice_from_builder(choice, report)?;
                 self.items.add_choice(choice, report);
@@ -129,6 +140,16 @@ impl Assembly {
                 self.items.effect.get_or_insert(span.clone());
                 let function = closure(tokens, Role::Resolve, report)?;
                 self.items.add_resolve(function, span, report);
+            }
+            Part::Between(_, span) => {
+                self.items.effect.get_or_insert(span.clone());
+                let function = closure(tokens, Role::Between, report)?;
+                self.items.add_resolve(function, span, report);
+            }
+            Part::Image(name, _) => {
+                let name = names::declared(name, "image", report);
+                let function = closure(tokens, Role::Image(name.value.clone()), report)?;
+                self.items.add_image(name, function, report);
             }
             Part::Helper(_) => {
                 let tokens = bounded(tokens, report)?;

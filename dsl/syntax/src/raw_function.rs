@@ -2,7 +2,7 @@
 //!
 //! Input: none; these types are plain data. The grammar creates them and the type checker reads them.
 
-use fragbuf_model::{SourceSpan, Spanned};
+use fragbuf_model::{SourceSpan, Spanned, image_resource};
 use proc_macro2::TokenStream;
 
 /// The purpose of a function.
@@ -14,6 +14,10 @@ pub enum Role {
     Constraint(usize),
     /// After `resolve`: `|fragments, u| -> Vec4`.
     Resolve,
+    /// After `between`: `|front, back, gap, u| -> Vec4`.
+    Between,
+    /// After `image` and this name: `|fragments, u| -> Vec4`.
+    Image(String),
     /// `fn` of this name.
     Helper(String),
 }
@@ -25,17 +29,35 @@ impl Role {
             Role::Criterion => "user_criterion".to_string(),
             Role::Constraint(index) => format!("user_admit_{index}"),
             Role::Resolve => "user_resolve".to_string(),
+            Role::Between => "user_between".to_string(),
+            Role::Image(name) => format!("user_{}", image_resource(name)),
             Role::Helper(name) => format!("user_{name}"),
         }
     }
 
-    /// Returns the name of a helper, or the keyword before a closure.
+    /// Whether the closure reads the list of fragments.
+    pub(crate) fn reads_list(&self) -> bool {
+        matches!(self, Role::Resolve | Role::Image(_))
+    }
+
+    /// Returns the usual parameters of a closure.
+    pub(crate) fn usual_parameters(&self) -> &'static [&'static str] {
+        match self {
+            Role::Criterion | Role::Constraint(_) => &["f", "u"],
+            Role::Resolve | Role::Image(_) => &["fragments", "u"],
+            Role::Between => &["front", "back", "gap", "u"],
+            Role::Helper(_) => &[],
+        }
+    }
+
+    /// Returns the name of a helper or an image, or the keyword before a closure.
     pub(crate) fn rust_name(&self) -> &str {
         match self {
             Role::Criterion => "least",
             Role::Constraint(_) => "where",
             Role::Resolve => "resolve",
-            Role::Helper(name) => name,
+            Role::Between => "between",
+            Role::Image(name) | Role::Helper(name) => name,
         }
     }
 }

@@ -18,6 +18,8 @@ pub(crate) fn of(function: &Function, helpers: &[Option<&Function>]) -> Reads {
             None => drop(open.pop()),
             Some(Use::Attribute(name)) => add(&mut reads.attributes, name),
             Some(Use::Uniform(name)) => add(&mut reads.uniforms, name),
+            Some(Use::Texture(name)) => add(&mut reads.textures, name),
+            Some(Use::Image(name)) => add(&mut reads.images, name),
             Some(Use::Helper(index, _)) => {
                 let first = entered.get_mut(*index).is_some_and(|seen| !std::mem::replace(seen, true));
                 let helper = helpers.get(*index).copied().flatten();

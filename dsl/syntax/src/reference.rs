@@ -6,6 +6,7 @@ use std::fmt::Write;
 
 use fragbuf_model::{Format, UniformType};
 
+use crate::check::TEXTURE_METHODS;
 use crate::methods::{METHODS, Method, MethodType, Spelling, UNSUPPORTED};
 use crate::types::Type;
 
@@ -19,6 +20,7 @@ pub fn reference() -> String {
     statements(&mut markdown);
     arithmetic(&mut markdown);
     methods(&mut markdown);
+    textures(&mut markdown);
     constants(&mut markdown);
     unsupported(&mut markdown);
     markdown
@@ -85,6 +87,21 @@ fn methods(markdown: &mut String) {
             spelling(method.wgsl),
             method.note
         );
+    }
+}
+
+fn textures(markdown: &mut String) {
+    markdown.push_str(
+        "\n# Textures and images\n\n\
+         `texture { lut: 2d, volume: 3d }` declares textures, which the caller supplies; `image near |fragments, u| …` computes a value \
+         per pixel before the effect. Closures read both through the uniforms: `u.lut.sample(vec2(0.5, 0.5))`, `u.near.at(1, 0)`. A texel \
+         has four floats. Filters are computed in the shader, in 32 bits, so that all devices give the same result; places \
+         beyond the border are those of the nearest texel.\n\n\
+         | of | method | |\n|---|---|---|\n",
+    );
+    for method in TEXTURE_METHODS {
+        let on: Vec<&str> = method.on.iter().map(|shape| Type::Texture(*shape).rust()).collect();
+        let _ = writeln!(markdown, "| {} | `{}` | {} |", on.join(" "), method.signature(), method.about);
     }
 }
 

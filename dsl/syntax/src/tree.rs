@@ -6,7 +6,7 @@ use fragbuf_model::{SourceSpan, Spanned};
 
 use crate::infer::Inference;
 use crate::methods::Spelling;
-use crate::types::Type;
+use crate::types::{Shape, Type};
 
 /// Index into [`Function::variables`].
 pub(crate) type VariableId = usize;
@@ -61,6 +61,8 @@ pub(crate) struct Variable {
 pub(crate) enum Use {
     Attribute(String),
     Uniform(String),
+    Texture(String),
+    Image(String),
     /// The index of the helper, and the span of the call.
     Helper(usize, SourceSpan),
 }
@@ -98,8 +100,10 @@ pub(crate) enum Kind {
     Variable(VariableId),
     /// `f.depth`
     Attribute(Box<Expr>, String),
-    /// `u.cut`
+    /// `u.cut`; also `u.lut` as the receiver of a method.
     Uniform(String),
+    /// `u.lut.sample(…)`: the name of the texture, the method and its arguments.
+    Lookup(Shape, String, &'static str, Vec<Expr>),
     /// `v.x` and swizzles such as `v.xy()`.
     Components(Box<Expr>, String),
     /// `v[i]`
@@ -249,9 +253,10 @@ impl Kind {
             Kind::Attribute(inner, _) | Kind::Components(inner, _) | Kind::Layer(inner) => vec![inner],
             Kind::Negate(inner) | Kind::Not(inner) | Kind::Cast(inner) | Kind::Return(inner) => vec![inner],
             Kind::Element(a, b) | Kind::Binary(_, a, b) => vec![a, b],
-            Kind::Method(_, arguments) | Kind::Helper(_, arguments) | Kind::Vector(arguments) => {
-                arguments.iter().collect()
-            }
+            Kind::Method(_, arguments)
+            | Kind::Helper(_, arguments)
+            | Kind::Lookup(_, _, _, arguments)
+            | Kind::Vector(arguments) => arguments.iter().collect(),
             Kind::Assign { place, value, .. } => vec![place, value],
             Kind::If(branch) => std::iter::once(&branch.condition).chain(&branch.else_branch).collect(),
             Kind::For(each) => match &each.sequence {

@@ -2,7 +2,7 @@
 //!
 //! Input: type names of the user's source, and formats of the model. Output: [`Type`].
 
-use fragbuf_model::{Format, UniformType};
+use fragbuf_model::{Format, TextureDimension, UniformType};
 
 /// The type of an expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +19,8 @@ pub(crate) enum Type {
     Fragment,
     /// All uniforms. They have module scope in WGSL, so they are never a value there.
     Uniforms,
+    /// A texture or an image, which only methods read.
+    Texture(Shape),
     /// The sorted list of fragments. WGSL accesses it by functions, so it is never a value there.
     Fragments,
     /// `()`
@@ -29,6 +31,27 @@ pub(crate) enum Type {
     Error,
     /// A number whose type is inferred from its uses; an index into [`crate::infer::Inference`].
     Unknown(usize),
+}
+
+/// The shape of a texture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shape {
+    /// A texture of the caller with columns and rows.
+    D2,
+    /// A texture of the caller with columns, rows and slices.
+    D3,
+    /// An image of the description, with a texel per pixel.
+    Image,
+}
+
+impl Shape {
+    /// Returns the shape of a texture of this dimension.
+    pub(crate) fn of(dimension: TextureDimension) -> Self {
+        match dimension {
+            TextureDimension::D2 => Shape::D2,
+            TextureDimension::D3 => Shape::D3,
+        }
+    }
 }
 
 impl Type {
@@ -87,6 +110,9 @@ impl Type {
             Type::Vector(_) => "Vec4",
             Type::Fragment => "Fragment",
             Type::Uniforms => "Uniforms",
+            Type::Texture(Shape::D2) => "Texture2d",
+            Type::Texture(Shape::D3) => "Texture3d",
+            Type::Texture(Shape::Image) => "Image",
             Type::Fragments => "the list of fragments",
             Type::Unit => "()",
             Type::Never => "!",
@@ -106,7 +132,7 @@ impl Type {
             Type::Vector(3) => "vec3<f32>",
             Type::Vector(_) => "vec4<f32>",
             Type::Fragment => "Fragment",
-            Type::Uniforms | Type::Fragments | Type::Unit | Type::Never | Type::Error => "u32",
+            Type::Uniforms | Type::Texture(_) | Type::Fragments | Type::Unit | Type::Never | Type::Error => "u32",
         }
     }
 
@@ -117,6 +143,6 @@ impl Type {
 
     /// Returns whether a WGSL variable can have this type.
     pub(crate) fn is_value(self) -> bool {
-        !matches!(self, Type::Uniforms | Type::Fragments | Type::Unit | Type::Never)
+        !matches!(self, Type::Uniforms | Type::Texture(_) | Type::Fragments | Type::Unit | Type::Never)
     }
 }

@@ -97,6 +97,9 @@ pub(crate) const EFFECTS: &[Effect] = &[
         &[
             ("--scene", "builtin:knot,turns=5,thickness=60,rings=500,sides=48"),
             ("--size", "960x540"),
+            ("--shading", "unlit"),
+            ("--uniform", "least=0.02"),
+            ("--set", "samples=coverage"),
             ("--camera", "orbit:15,20"),
         ]
     ),

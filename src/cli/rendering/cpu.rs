@@ -15,6 +15,7 @@ use super::opaque::{OpaqueScene, depth_texture};
 use super::prepared::FrameTime;
 use super::request::{RedrawState, RenderTask};
 use super::result::{FrameStats, RenderResult};
+use super::textures;
 use crate::cli::attributes::{Geometry, geometry};
 use crate::cli::device::CPU;
 use crate::cli::input::Input;
@@ -60,7 +61,9 @@ pub(super) fn render(
     let memory = geometry.memory.without(opaque_bytes, "the image of the opaque scene")?;
     let importance = view.importance.as_ref().filter(|_| !external.importance.is_empty());
     let importance = importance.map(|path| Importance::read(path, view.size, memory)).transpose()?;
-    let memory = importance.as_ref().map_or(memory, |importance| importance.memory).left();
+    let memory = importance.as_ref().map_or(memory, |importance| importance.memory);
+    let (textures, memory) = textures::read(variant, &view.textures, memory)?;
+    let memory = memory.left();
     let uniforms = uniforms::values(request.uniforms, variant, scene)?;
     let (width, height) = view.size;
     loop {
@@ -93,6 +96,9 @@ pub(super) fn render(
         }
         for (name, importance) in external.importance.iter().zip(importance.iter().cycle()) {
             device.set_texture(name, &importance.values)?;
+        }
+        for texture in &textures {
+            device.set_description_texture(&texture.name, texture.size, &texture.texels)?;
         }
         device.set_objects(&geometry.objects);
         device.set_camera(&scene.camera.view_projection);

@@ -22,7 +22,7 @@ impl ExternalTextures {
     /// Returns the textures of a plan. `Err`: an option that supplies one of them is missing.
     pub(super) fn of(plan: &Plan, view: &View, opaque: Option<&OpaqueScene<'_>>) -> Result<Self, Failure> {
         let mut textures = ExternalTextures::default();
-        for planned in plan.resources.iter().filter(|planned| planned.is_external()) {
+        for planned in plan.resources.iter().filter(|planned| planned.is_external() && !planned.is_of_description()) {
             let names = if planned.is_opaque_depth() { &mut textures.depths } else { &mut textures.importance };
             names.push(planned.resource.name.clone());
         }

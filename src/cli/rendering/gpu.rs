@@ -17,6 +17,7 @@ use super::opaque::{OpaqueScene, depth_texture};
 use super::prepared::FrameTime;
 use super::request::{RedrawState, RenderTask};
 use super::result::{FrameStats, RenderResult};
+use super::textures;
 use crate::cli::attributes::geometry;
 use crate::cli::input::Input;
 use crate::cli::output::Failure;
@@ -165,8 +166,11 @@ impl GpuRenderer {
         let memory = memory.without(view.image_bytes(IMAGE), "the image")?;
         let importance = view.importance.as_ref().filter(|_| !external.importance.is_empty());
         let importance = importance.map(|path| Importance::read(path, view.size, memory)).transpose()?;
-        let memory = importance.as_ref().map_or(memory, |importance| importance.memory).left();
+        let memory = importance.as_ref().map_or(memory, |importance| importance.memory);
         let importance = importance.map(|importance| importance.upload(device, queue, view.size));
+        let (textures, memory) = textures::read(variant, &view.textures, memory)?;
+        let textures = textures::upload(variant, &textures, device, queue)?;
+        let memory = memory.left();
         drop(geometry);
         let settings = Settings {
             memory,
@@ -201,6 +205,9 @@ impl GpuRenderer {
             }
             for (name, importance) in external.importance.iter().zip(importance.iter().cycle()) {
                 block_on(device, renderer.set_texture(name, importance))??;
+            }
+            for (name, texture) in &textures {
+                block_on(device, renderer.set_texture(name, texture))??;
             }
             if renderer.plan().passes.iter().any(|pass| pass.objects == Objects::Boxes) {
                 block_on(device, renderer.set_objects(mesh.boxes()))??;

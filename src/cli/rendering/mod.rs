@@ -14,10 +14,12 @@ mod importance;
 mod mesh;
 mod opaque;
 mod precision;
+mod preintegrated;
 mod prepared;
 mod request;
 mod result;
 mod selection;
+pub(super) mod textures;
 mod warnings;
 
 #[cfg(feature = "figures")]
@@ -55,8 +57,11 @@ pub(crate) fn render(
     let mut result = complete(request, input, (view, selection), scene, progress)?.result;
     let uniforms = uniforms::values(request.uniforms, &result.plan.variant, scene)?;
     result.warn(request.description, &uniforms, &scene.scene);
-    let has_importance =
-        result.plan.resources.iter().any(|planned| planned.is_external() && !planned.is_opaque_depth());
+    let has_importance = result
+        .plan
+        .resources
+        .iter()
+        .any(|planned| planned.is_external() && !planned.is_opaque_depth() && !planned.is_of_description());
     if view.importance.is_some() && !has_importance && !view.is_later_frame {
         let help = "choose `--set allocation=by_importance` for a storage that has it, or leave out `--importance`";
         output::warn(&format!("{}: `--importance` changes nothing: {help}", request.description));

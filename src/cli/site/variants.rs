@@ -96,7 +96,7 @@ fn values(registry: &Registry, axis: &str) -> Vec<Value> {
 /// Returns the rows of an axis that have a name.
 fn rows<'r>(registry: &'r Registry, axis: &str) -> Vec<&'r Row> {
     let rows = registry.rows().iter().filter(|row| row.axis == axis);
-    rows.filter(|row| row.key != Registry::CLOSURE).collect()
+    rows.filter(|row| !Registry::is_of_closures(row)).collect()
 }
 
 /// Returns the value of an axis in a plan.

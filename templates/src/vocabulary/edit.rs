@@ -31,6 +31,9 @@ pub enum Edit {
     Repeat(String, Repeat),
     /// Splits a pass into several.
     Split(Split),
+    /// Inserts a pass for each image of the description before the pass of this name: that pass with the form `image` of its skeleton,
+    /// which writes a buffer in place of targets. Later passes can read the buffer.
+    Images(String),
     /// Sets the samples of every pass over the scene.
     Samples(Samples),
 }

@@ -5,6 +5,7 @@
 
 mod capability;
 mod condition;
+mod dimension;
 mod edit;
 mod feature;
 mod formula;
@@ -26,6 +27,7 @@ pub type Text = std::borrow::Cow<'static, str>;
 
 pub use capability::Capability;
 pub use condition::{Condition, DescriptionValues};
+pub use dimension::TextureDimension;
 pub use edit::{Edit, Split};
 pub use feature::Feature;
 pub use formula::{Expression, Formula, apply};

@@ -1,6 +1,6 @@
 //! Buffers and textures of a technique.
 
-use super::{Formula, Text};
+use super::{Formula, Text, TextureDimension};
 
 /// A buffer or texture.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +41,8 @@ pub enum Element {
     Value,
     /// A texel of a frame-sized texture. An extent `sample` gives the number of samples; without it there is one.
     Texture(TextureFormat),
+    /// A texture of the description, of any size, with four float channels and one level. The caller supplies it.
+    Texels(TextureDimension),
     /// The value words of a fragment, one per texture of this format. The plan has a resource for each texture, and a
     /// use of the resource applies to all of them.
     ValueTextures(TextureFormat),

@@ -112,7 +112,7 @@ pub const EFFECTS: &[Effect] = &[
         ("> f.depth", ">= f.depth"),
         crossings::self_collision
     ),
-    effect!("winding_number", &[], closed over ALL, ("number.max(greatest)", "number"), crossings::winding_number),
+    effect!("winding_number", &[("least", Number::F32(1e-4))], closed over ALL, ("number.max(greatest)", "number"), crossings::winding_number),
     effect!("self_trimmed", &[("rule", Number::U32(1))], closed over ALL, ("> f.depth", ">= f.depth"), crossings::self_trimmed),
     effect!(
         "coplanarity",

@@ -4,6 +4,7 @@
 //! from naga's module, from which every target's text is printed, not from the plan: a plan lists what a pass may use.
 
 use fragbuf_codegen::Stage;
+use fragbuf_templates::vocabulary::TextureDimension;
 use naga::{AddressSpace, Handle, ImageClass, ImageDimension, ScalarKind, ShaderStage, StorageAccess, TypeInner};
 
 use crate::Checked;
@@ -35,6 +36,8 @@ pub enum BindingKind {
     Texture {
         /// What a shader reads.
         sample_type: SampleType,
+        /// Its dimension.
+        dimension: TextureDimension,
         /// Whether it has several samples per pixel.
         multisampled: bool,
     },
@@ -109,13 +112,18 @@ impl Checked {
                 read_only: !access.intersects(StorageAccess::STORE | StorageAccess::ATOMIC),
                 least_bytes: inner.size(module.to_ctx()),
             }),
-            (_, TypeInner::Image { dim: ImageDimension::D2, arrayed: false, class }) => image(*class),
+            (_, TypeInner::Image { dim: ImageDimension::D2, arrayed: false, class }) => {
+                image(*class, TextureDimension::D2)
+            }
+            (_, TypeInner::Image { dim: ImageDimension::D3, arrayed: false, class }) => {
+                image(*class, TextureDimension::D3)
+            }
             _ => None,
         }
     }
 }
 
-fn image(class: ImageClass) -> Option<BindingKind> {
+fn image(class: ImageClass, dimension: TextureDimension) -> Option<BindingKind> {
     let (sample_type, multisampled) = match class {
         ImageClass::Depth { multi } => (SampleType::Depth, multi),
         ImageClass::Sampled { kind: ScalarKind::Float, multi } => (SampleType::Float, multi),
@@ -132,7 +140,7 @@ fn image(class: ImageClass) -> Option<BindingKind> {
         }
         ImageClass::Sampled { .. } | ImageClass::External => return None,
     };
-    Some(BindingKind::Texture { sample_type, multisampled })
+    Some(BindingKind::Texture { sample_type, dimension, multisampled })
 }
 
 fn stage(stage: ShaderStage) -> Option<Stage> {

@@ -370,6 +370,6 @@ fn compute(plan: &Plan, workgroups: &[Workgroup]) -> Vec<Limit> {
 fn texture_of(planned: &PlannedResource) -> Option<TextureFormat> {
     match planned.resource.element {
         Element::Texture(format) | Element::ValueTextures(format) | Element::EntryTextures(format) => Some(format),
-        Element::Word | Element::Word64 | Element::Entry | Element::Value => None,
+        Element::Texels(_) | Element::Word | Element::Word64 | Element::Entry | Element::Value => None,
     }
 }

@@ -5,7 +5,7 @@
 //! share a number: each takes the least that no other resource of its passes has. Then a plan needs more than 8 only if a pass does.
 
 use fragbuf_codegen::{FIRST_BINDING, Plan, PlannedResource};
-use fragbuf_templates::vocabulary::{Access, Element};
+use fragbuf_templates::vocabulary::Access;
 
 /// The binding points of the resources of one plan.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -29,7 +29,7 @@ impl OpenGlBindings {
     pub fn of(plan: &Plan) -> Self {
         let mut numbered: Vec<(&PlannedResource, Point)> = Vec::new();
         for planned in plan.resources.iter().filter(|planned| is_bound(plan, planned)) {
-            let is_texture = matches!(planned.resource.element, Element::Texture(_));
+            let is_texture = planned.is_texture();
             let is_free = |number: &u32| {
                 let same = |point: &Point| point.is_texture == is_texture && point.number == *number;
                 !numbered.iter().any(|(other, point)| same(point) && meet(plan, planned, other))

@@ -9,17 +9,26 @@ use fragbuf_interpreter::Texture;
 use fragbuf_templates::vocabulary::{Element, TextureFormat};
 use naga::ScalarKind;
 
+use crate::memory::Words;
 use crate::texel::Texel;
 
 /// A resource bound to a texture of a program.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BoundTexture<'a> {
     words: &'a [AtomicU32],
-    format: TextureFormat,
+    texel: Texel,
     /// Whether the shader reads integers; of depth with stencil, the stencil.
     is_integer: bool,
     size: (u32, u32),
+    /// The samples of a texel, or the slices of a texture with three dimensions.
     samples: u32,
+}
+
+/// A texture of the description: four floats per texel, rows after one another, and slices.
+#[derive(Debug, Default)]
+pub(crate) struct DescribedTexture {
+    pub(crate) size: [u32; 3],
+    pub(crate) words: Words,
 }
 
 impl<'a> BoundTexture<'a> {
@@ -47,10 +56,22 @@ impl<'a> BoundTexture<'a> {
         if !fits {
             return mismatch(&format!("its declaration does not match the format {format:?}"));
         }
-        Ok(BoundTexture { words, format, is_integer, size, samples })
+        Ok(BoundTexture { words, texel: Texel::Format(format), is_integer, size, samples })
     }
 
-    /// Returns the texel at a column, a row, and a sample or the only level. `None`: out of bounds.
+    /// Binds a texture of the description.
+    pub(crate) fn described(texture: &'a DescribedTexture) -> Self {
+        let [width, height, slices] = texture.size;
+        BoundTexture {
+            words: &texture.words,
+            texel: Texel::Output,
+            is_integer: false,
+            size: (width, height),
+            samples: slices,
+        }
+    }
+
+    /// Returns the texel at a column, a row, and a sample, a slice or the only level. `None`: out of bounds.
     pub(crate) fn texel(&self, [x, y, sample]: [u32; 3]) -> Option<[u32; 4]> {
         let (width, height) = self.size;
         if x >= width || y >= height || sample >= self.samples {
@@ -58,12 +79,12 @@ impl<'a> BoundTexture<'a> {
         }
         let pixels = width as usize * height as usize;
         let index = sample as usize * pixels + y as usize * width as usize + x as usize;
-        let texel = Texel::Format(self.format);
-        let words = texel.load(self.words, index);
-        Some(if self.is_integer { texel.decode_integer(words) } else { texel.decode(words).map(f32::to_bits) })
+        let words = self.texel.load(self.words, index);
+        let floats = || self.texel.decode(words).map(f32::to_bits);
+        Some(if self.is_integer { self.texel.decode_integer(words) } else { floats() })
     }
 
-    /// Returns the columns, rows and samples.
+    /// Returns the columns, rows, and samples or slices.
     pub(crate) fn extent(&self) -> [u32; 3] {
         [self.size.0, self.size.1, self.samples]
     }

@@ -1,17 +1,18 @@
 //! The CPU device: runs one plan at one frame size.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
 use fragbuf_codegen::Plan;
 use fragbuf_frame::{
-    LaggedValues, MemoryLimits, Readbacks, Value, Values, initial_values, pool_size_after, resource, set_uniform,
-    unsupported, zero_uniforms,
+    LaggedValues, MemoryLimits, Readbacks, Value, Values, described_texture, initial_values, pool_size_after, resource,
+    set_uniform, unsupported, zero_uniforms,
 };
 use fragbuf_templates::vocabulary::{Element, TextureFormat};
 
-use crate::memory::{Memory, memory_limits, read};
+use crate::bound_texture::DescribedTexture;
+use crate::memory::{Memory, memory_limits, read, zeros};
 use crate::settings::Settings;
 use crate::{Code, Error};
 
@@ -29,6 +30,8 @@ pub struct Device {
     pub(crate) uniforms: Vec<u32>,
     pub(crate) camera: Vec<u32>,
     pub(crate) objects: Vec<Range<u32>>,
+    /// The textures of the description that the caller has set, by their bindings.
+    pub(crate) textures: BTreeMap<u32, DescribedTexture>,
     /// External textures that the caller has not set yet.
     pub(crate) missing: BTreeSet<usize>,
 }
@@ -51,10 +54,22 @@ impl Device {
         let uniforms = zero_uniforms(&code.plan.variant.uniforms);
         let resources = code.plan.resources.iter().enumerate();
         let missing = resources.filter(|(_, planned)| planned.is_external()).map(|(index, _)| index).collect();
-        let (camera, objects) = (Vec::new(), Vec::new());
+        let (camera, objects, textures) = (Vec::new(), Vec::new(), BTreeMap::new());
         let lag = LaggedValues::new(&code.plan, settings.decisions);
-        let mut device =
-            Device { code, settings, values, limits, readbacks, lag, memory, uniforms, camera, objects, missing };
+        let mut device = Device {
+            code,
+            settings,
+            values,
+            limits,
+            readbacks,
+            lag,
+            memory,
+            uniforms,
+            camera,
+            objects,
+            textures,
+            missing,
+        };
         device.set_camera(&IDENTITY);
         Ok(device)
     }
@@ -98,6 +113,32 @@ impl Device {
             *word.get_mut() = texel.to_bits();
         }
         self.missing.remove(&index);
+        Ok(())
+    }
+
+    /// Sets a texture of the description, by the name that it has there. `size`: columns, rows and slices, 1 for a texture of two
+    /// dimensions; four channels per texel, row after row, slice after slice. Frames read it until the caller sets another.
+    pub fn set_description_texture(&mut self, name: &str, size: [u32; 3], texels: &[[f32; 4]]) -> Result<(), Error> {
+        let number = described_texture(&self.code.plan, name, size)?;
+        let count = size.iter().map(|length| u64::from(*length)).product::<u64>();
+        if texels.len() as u64 != count {
+            let expected =
+                format!("of {count} texels, {} x {} x {}, but has {}", size[0], size[1], size[2], texels.len());
+            return Err(fragbuf_frame::Error::BadValue { name: format!("the texture `{name}`"), expected }.into());
+        }
+        let bytes = count.saturating_mul(size_of::<[f32; 4]>() as u64);
+        let left = self.limits.left(&self.code.plan, &self.values)?;
+        if bytes > left {
+            let expected = format!("at most {left} bytes, which the memory budget leaves, but needs {bytes}");
+            return Err(fragbuf_frame::Error::BadValue { name: format!("the texture `{name}`"), expected }.into());
+        }
+        let mut words = zeros(name, bytes)?;
+        for (word, value) in words.iter_mut().zip(texels.iter().flatten()) {
+            *word.get_mut() = value.to_bits();
+        }
+        let binding = self.code.plan.resources[number.0].binding;
+        self.textures.insert(binding, DescribedTexture { size, words });
+        self.missing.remove(&number.0);
         Ok(())
     }
 

@@ -10,12 +10,12 @@ use fragbuf_templates::vocabulary::TextureFormat;
 /// The greatest 24-bit depth.
 pub(crate) const DEPTH_24: f64 = 16_777_215.0;
 
-/// The texel format of a colour attachment.
+/// The texel format of an attachment or a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Texel {
     /// The format of a texture of the plan.
     Format(TextureFormat),
-    /// The output of the caller: four floats.
+    /// Four floats: the output of the caller, and textures of a description.
     Output,
 }
 

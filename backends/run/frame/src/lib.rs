@@ -9,6 +9,7 @@ mod boxes;
 mod condition;
 mod counters;
 mod cursor;
+mod described;
 mod error;
 mod host_step;
 mod lag;
@@ -28,6 +29,7 @@ pub use boxes::{
 pub use condition::{Condition, ConditionWord, Conditions, LOOP_WORDS, check_conditions, loop_reports, object_queries};
 pub use counters::{COUNTERS_RESOURCE, Counter, Counters, OUT_OF_ORDER, PARTIAL_COVERAGE, POOL_EXHAUSTED};
 pub use cursor::{Cursor, first_of_query};
+pub use described::{MAX_TEXTURE_SIDE, described_texture};
 pub use error::{Error, MemoryNeed};
 pub use host_step::decide;
 pub use lag::{Decisions, LaggedValues};

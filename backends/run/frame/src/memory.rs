@@ -3,8 +3,7 @@
 //! Input: a plan, the values of its symbols and the limits of a device. Output: bytes and rows, or an error with the numbers.
 //! Every device asks here before it allocates; this module allocates nothing.
 
-use fragbuf_codegen::{Action, PassId, Plan, PlannedResource, ResourceId, SymbolId};
-use fragbuf_templates::vocabulary::Element;
+use fragbuf_codegen::{Action, PassId, Plan, ResourceId, SymbolId};
 
 use crate::{Error, MemoryNeed, Values};
 
@@ -43,6 +42,9 @@ pub struct BufferLimit {
 impl MemoryLimits {
     /// Returns the rows of a slice: those that the caller requests, or the most that fit. `Err`: one row does not fit.
     pub fn rows(&self, plan: &Plan, values: &Values, requested: Option<u32>) -> Result<u32, Error> {
+        if plan.needs_whole_frame() {
+            return self.whole_frame(plan, values, requested);
+        }
         if let Some(rows) = requested {
             return Ok(rows.clamp(1, values.height().max(1)));
         }
@@ -60,6 +62,21 @@ impl MemoryLimits {
             }
             all_slices = needed;
         }
+    }
+
+    /// Returns all rows, for a plan whose passes read other pixels. `Err`: the caller requests fewer, or the frame does not fit.
+    fn whole_frame(&self, plan: &Plan, values: &Values, requested: Option<u32>) -> Result<u32, Error> {
+        let height = values.height();
+        if requested.is_some_and(|rows| rows < height) {
+            return Err(Error::BadValue {
+                name: "the rows of a slice".to_owned(),
+                expected: format!(
+                    "{height}, those of the frame: closures read images of the description at other pixels"
+                ),
+            });
+        }
+        self.check(plan, values, self.per_slice)?;
+        Ok(height)
     }
 
     /// Returns the bytes of every resource, for slices of the rows of `values`. `Err`: a buffer exceeds its limit, or all together
@@ -92,7 +109,7 @@ impl MemoryLimits {
         let mut need = MemoryNeed { size, rows: values.rows(), image, textures: 0, buffers: slices, budget };
         let mut sizes = resource_bytes(plan, values)?.into_iter().map(|(_, bytes)| bytes).collect::<Vec<_>>();
         for (bytes, planned) in sizes.iter_mut().zip(&plan.resources) {
-            if !is_texture(planned) {
+            if !planned.is_texture() {
                 self.check_buffer(&planned.resource.name, *bytes)?;
                 need.buffers = need.buffers.saturating_add(*bytes);
                 continue;
@@ -126,7 +143,7 @@ pub fn resource_bytes<'a>(plan: &'a Plan, values: &Values) -> Result<Vec<(&'a st
             (Some(for_any_k), Some(command)) if is_used_before(plan, ResourceId(index), command) => for_any_k,
             _ => values,
         };
-        let whole = is_texture(planned).then(|| slice.with_rows(slice.height()));
+        let whole = planned.is_texture().then(|| slice.with_rows(slice.height()));
         let bytes = whole.as_ref().unwrap_or(slice).evaluate(&planned.words, &format!("`{name}`"))?.saturating_mul(4);
         Ok((name.as_str(), bytes))
     });
@@ -136,7 +153,7 @@ pub fn resource_bytes<'a>(plan: &'a Plan, values: &Values) -> Result<Vec<(&'a st
 /// Returns the bytes of all buffers, as [`resource_bytes`] counts them.
 pub fn buffer_bytes(plan: &Plan, values: &Values) -> Result<u64, Error> {
     let sizes = resource_bytes(plan, values)?.into_iter().zip(&plan.resources);
-    let buffers = sizes.filter(|(_, planned)| !is_texture(planned)).map(|((_, bytes), _)| bytes);
+    let buffers = sizes.filter(|(_, planned)| !planned.is_texture()).map(|((_, bytes), _)| bytes);
     Ok(buffers.fold(0, u64::saturating_add))
 }
 
@@ -165,10 +182,6 @@ fn is_used_before(plan: &Plan, id: ResourceId, command: usize) -> bool {
         Action::Pass(pass) => uses(*pass),
         Action::Loop(_) | Action::LoopEnd(_) | Action::Host(_) => false,
     })
-}
-
-fn is_texture(planned: &PlannedResource) -> bool {
-    matches!(planned.resource.element, Element::Texture(_))
 }
 
 /// Returns the most rows of a slice that fit, or 0. `height`: the rows of the frame. No number of rows may fit after one that does not.

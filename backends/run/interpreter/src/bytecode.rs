@@ -121,6 +121,8 @@ pub struct Texture {
     pub is_depth: bool,
     /// Whether it is declared as multisampled.
     pub is_multisampled: bool,
+    /// Whether it has three dimensions.
+    pub is_3d: bool,
 }
 
 /// One input or output of an entry point or function. Structures are flattened to their members.

@@ -13,7 +13,7 @@
 //!
 //! Arithmetic follows WGSL where WGSL defines it (wrapping, division by zero, shifts, saturating conversions).
 //! Uninitialised memory is zero. An index out of bounds reads 0 or writes nothing, and is an [`OutOfBoundsAccess`].
-//! 2D textures are read texel by texel, single and multisampled. Samplers, storage textures, layers, levels, derivatives,
+//! 2D and 3D textures are read texel by texel, single and multisampled. Samplers, storage textures, layers, levels, derivatives,
 //! subgroups, ray queries, 16-bit numbers and 64-bit floats are [`Unsupported`].
 
 mod arithmetic;

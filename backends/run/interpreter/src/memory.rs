@@ -133,7 +133,7 @@ pub trait SharedMemory {
     fn texel(&self, _texture: u16, _coordinates: [u32; 3]) -> Option<[u32; 4]> {
         None
     }
-    /// Returns the columns, rows and samples of a texture.
+    /// Returns the columns, rows, and samples or slices of a texture.
     fn extent(&self, _texture: u16) -> [u32; 3] {
         [0; 3]
     }

@@ -113,7 +113,7 @@ pub(crate) enum Op {
         coordinates: Word,
         count: u32,
     },
-    /// Loads the columns, rows and samples of a texture.
+    /// Loads the columns, rows, and samples or slices of a texture.
     Extent {
         to: Word,
         texture: u16,

@@ -5,16 +5,23 @@
 
 use fragbuf_codegen::{Plan, PlannedResource};
 use fragbuf_frame::{Values, resource};
-use fragbuf_templates::vocabulary::{Access, Element};
+use fragbuf_templates::vocabulary::{Access, Element, TextureDimension};
 
 use crate::Error;
 use crate::texture::{texture_format, texture_samples};
 
-/// Returns the number of the resource `name` if it is external and `texture` has the required properties.
+/// Returns the number of the resource `name`, or of the description's texture `name`, if it is external and `texture` has the required properties.
 pub(crate) fn accept(plan: &Plan, values: &Values, name: &str, texture: &wgpu::Texture) -> Result<usize, Error> {
-    let number = resource(plan, name)?.0;
+    // A texture of the description has the name that the description gives it.
+    let described = plan.variant.textures.iter().find(|texture| texture.name.value == name);
+    let resource_name = described.map(|texture| texture.resource());
+    let number = resource(plan, resource_name.as_deref().unwrap_or(name))?.0;
     let planned = &plan.resources[number];
-    let Element::Texture(format) = planned.resource.element else { return Err(not_external(name)) };
+    let format = match planned.resource.element {
+        Element::Texture(format) => format,
+        Element::Texels(dimension) => return accept_described(name, dimension, texture).map(|()| number),
+        _ => return Err(not_external(name)),
+    };
     if !planned.is_external() {
         return Err(not_external(name));
     }
@@ -39,6 +46,33 @@ pub(crate) fn accept(plan: &Plan, values: &Values, name: &str, texture: &wgpu::T
             texture.sample_count(),
             found.depth_or_array_layers,
             texture.mip_level_count(),
+            texture.usage(),
+        ),
+    })
+}
+
+/// Checks a texture of the description, which has any size and any format of floats.
+fn accept_described(name: &str, dimension: TextureDimension, texture: &wgpu::Texture) -> Result<(), Error> {
+    let (expected, in_words) = match dimension {
+        TextureDimension::D2 => (wgpu::TextureDimension::D2, "two dimensions, one layer"),
+        TextureDimension::D3 => (wgpu::TextureDimension::D3, "three dimensions"),
+    };
+    let is_float = matches!(texture.format().sample_type(None, None), Some(wgpu::TextureSampleType::Float { .. }));
+    let layers = texture.size().depth_or_array_layers;
+    let has_shape = texture.dimension() == expected && (dimension == TextureDimension::D3 || layers == 1);
+    let is_plain = texture.mip_level_count() == 1 && texture.sample_count() == 1;
+    if has_shape && is_plain && is_float && texture.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
+        return Ok(());
+    }
+    Err(Error::BadValue {
+        name: format!("the texture `{name}`"),
+        expected: format!(
+            "of {in_words}, one level, one sample and a format of floats, with the usage TEXTURE_BINDING; it has the dimension \
+             {:?}, {layers} layers, {} levels, {} samples, the format {:?} and {:?}",
+            texture.dimension(),
+            texture.mip_level_count(),
+            texture.sample_count(),
+            texture.format(),
             texture.usage(),
         ),
     })

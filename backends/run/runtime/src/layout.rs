@@ -4,8 +4,8 @@
 //! renumbers the bindings of a layout consecutively and rewrites WGSL to match. SPIR-V that is passed through keeps the plan's
 //! numbers, and only a dense layout keeps them unchanged.
 
-use fragbuf_codegen::{FIRST_BINDING, Plan};
-use fragbuf_templates::vocabulary::{Access, Element, Kind, Pass};
+use fragbuf_codegen::{FIRST_BINDING, Plan, PlannedResource};
+use fragbuf_templates::vocabulary::{Access, Element, Kind, Pass, TextureDimension};
 
 use crate::Error;
 use crate::texture::sample_type;
@@ -32,6 +32,7 @@ pub(crate) enum Binding {
     Texture {
         index: usize,
         sample_type: wgpu::TextureSampleType,
+        dimension: wgpu::TextureViewDimension,
         samples: Samples,
     },
 }
@@ -55,11 +56,10 @@ pub(crate) fn bindings(plan: &Plan, pass: &Pass) -> Vec<Binding> {
     for (index, planned) in plan.resources.iter().enumerate() {
         let usage = pass.uses.iter().find(|usage| usage.resource == planned.resource.name);
         let number = planned.binding as usize;
-        if let (Some(usage), Element::Texture(format)) = (usage, planned.resource.element) {
-            if usage.access == Access::Sampled {
+        if planned.is_texture() {
+            if usage.is_some_and(|usage| usage.access == Access::Sampled) {
                 bindings.resize(bindings.len().max(number + 1), Binding::Unused);
-                let samples = if planned.is_multisampled() { Samples::Several } else { Samples::One };
-                bindings[number] = Binding::Texture { index, sample_type: sample_type(format), samples };
+                bindings[number] = texture(index, planned);
             }
             continue;
         }
@@ -71,6 +71,20 @@ pub(crate) fn bindings(plan: &Plan, pass: &Pass) -> Vec<Binding> {
     }
     bindings
 }
+
+/// Returns the binding of a texture that a pass reads.
+fn texture(index: usize, planned: &PlannedResource) -> Binding {
+    let samples = if planned.is_multisampled() { Samples::Several } else { Samples::One };
+    let (sample_type, dimension) = match planned.resource.element {
+        Element::Texture(format) => (sample_type(format), wgpu::TextureViewDimension::D2),
+        // The description filters; any format of floats can be bound.
+        Element::Texels(TextureDimension::D3) => (UNFILTERED, wgpu::TextureViewDimension::D3),
+        _ => (UNFILTERED, wgpu::TextureViewDimension::D2),
+    };
+    Binding::Texture { index, sample_type, dimension, samples }
+}
+
+const UNFILTERED: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: false };
 
 /// Creates the layout of a pass's bind group.
 pub(crate) fn bind_group_layout(device: &wgpu::Device, pass: &Pass, bindings: &[Binding]) -> wgpu::BindGroupLayout {
@@ -86,13 +100,9 @@ pub(crate) fn bind_group_layout(device: &wgpu::Device, pass: &Pass, bindings: &[
 fn entry(number: u32, binding: Binding, main: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
     let has_dynamic_offset = binding == Binding::Frame;
     let (visibility, ty) = match binding {
-        Binding::Texture { sample_type, samples, .. } => {
+        Binding::Texture { sample_type, dimension, samples, .. } => {
             let multisampled = samples == Samples::Several;
-            let ty = wgpu::BindingType::Texture {
-                sample_type,
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled,
-            };
+            let ty = wgpu::BindingType::Texture { sample_type, view_dimension: dimension, multisampled };
             return wgpu::BindGroupLayoutEntry { binding: number, visibility: main, ty, count: None };
         }
         Binding::Unused => (wgpu::ShaderStages::NONE, wgpu::BufferBindingType::Uniform),

@@ -3,7 +3,7 @@
 
 use fragbuf_codegen::{Plan, PlannedResource};
 use fragbuf_frame::{MemoryLimits, Values};
-use fragbuf_templates::vocabulary::{Access, Element};
+use fragbuf_templates::vocabulary::{Access, Element, TextureDimension};
 
 use crate::Error;
 use crate::error_scope::in_error_scope;
@@ -104,6 +104,23 @@ impl Memory {
     }
 }
 
+/// Creates a texture of one texel, to bind until the caller sets a texture of the description.
+fn placeholder(device: &wgpu::Device, name: &str, dimension: TextureDimension) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(name),
+        size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: match dimension {
+            TextureDimension::D2 => wgpu::TextureDimension::D2,
+            TextureDimension::D3 => wgpu::TextureDimension::D3,
+        },
+        format: wgpu::TextureFormat::Rgba8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    })
+}
+
 async fn allocate(
     device: &wgpu::Device,
     plan: &Plan,
@@ -112,6 +129,16 @@ async fn allocate(
     old: Option<&Allocation>,
 ) -> Result<Allocation, Error> {
     let what = format!("`{}`", planned.resource.name);
+    if let Element::Texels(dimension) = planned.resource.element {
+        let object = match old.map(|old| &old.object) {
+            Some(kept @ (DeviceObject::Texture(_) | DeviceObject::MissingTexture(_))) => kept.clone(),
+            _ => {
+                let make = || placeholder(device, &planned.resource.name, dimension);
+                DeviceObject::MissingTexture(in_error_scope(device, &what, size, make).await?)
+            }
+        };
+        return Ok(Allocation { object, size });
+    }
     if let Element::Texture(format) = planned.resource.element {
         let is_external = planned.is_external();
         let frame = (values.width(), values.height());

@@ -1,7 +1,6 @@
 //! Clears buffers to words other than zero, by copies from a buffer filled with the word: WebGPU clears only to zero.
 
-use fragbuf_codegen::{Action, Plan};
-use fragbuf_templates::vocabulary::Element;
+use fragbuf_codegen::{Action, Plan, PlannedResource};
 
 use crate::words;
 
@@ -14,7 +13,7 @@ pub(crate) fn patterns(device: &wgpu::Device, plan: &Plan) -> Vec<(u32, wgpu::Bu
     for command in &plan.frame.commands {
         let Action::Clear { resource, value } = command.action else { continue };
         let planned = plan.resources.get(resource.0);
-        let is_texture = planned.is_some_and(|planned| matches!(planned.resource.element, Element::Texture(_)));
+        let is_texture = planned.is_some_and(PlannedResource::is_texture);
         if value == 0 || is_texture || patterns.iter().any(|(known, _)| *known == value) {
             continue;
         }

@@ -223,7 +223,8 @@ impl Renderer {
 
     /// Sets an external texture (`init: external` in the manifest) with its content. It needs the plan's format, the size of the
     /// whole frame and the usages of the plan's passes. It is only read, from the next frame on, until another call replaces it
-    /// or the frame is resized.
+    /// or the frame is resized. A texture of the description has its name there, any size, one level, and any format of floats, and stays
+    /// set when the frame is resized.
     pub async fn set_texture(&mut self, name: &str, texture: &wgpu::Texture) -> Result<(), Error> {
         let number = accept(self.plan(), &self.resources.values, name, texture)?;
         let mut memory = self.resources.memory.clone();

@@ -75,7 +75,9 @@ impl<'s> Frame<'s> {
         for ((planned, (_, bytes)), words) in plan.resources.iter().zip(sizes).zip(memory) {
             // External textures begin without opaque surfaces, and with pixels of the greatest importance.
             let value = if planned.is_external() { EXTERNAL } else { STALE };
-            words.resize((bytes as usize / 4).max(1), value);
+            // A texture of the description has a row of texels that are 1, 0, 0, 0.
+            let length = if planned.is_of_description() { WIDTH as usize } else { bytes as usize / 4 };
+            words.resize(length.max(1), value);
         }
         self.set_iteration(0)
     }

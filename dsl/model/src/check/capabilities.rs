@@ -336,14 +336,15 @@ impl Context<'_> {
         indices.sort_by_key(|index| (self.extent_of_change(&self.choices[*index].axis), *index != at_fault));
         for index in indices {
             let axis = &self.choices[index].axis;
-            let has_closure = axis == Registry::CLOSURE_AXIS && self.draft.resolve.is_some();
+            let has_closure =
+                axis == Registry::CLOSURE_AXIS && (self.draft.resolve.is_some() || self.draft.between.is_some());
             for row in self.registry.rows_of(axis) {
                 let mut other = combination.clone();
                 other[index] = row;
                 if !Rules::new(&other, self.given).is_legal() {
                     continue;
                 }
-                match (row.key == Registry::CLOSURE, has_closure) {
+                match (Registry::is_of_closures(row), has_closure) {
                     (false, false) => fixes.push(name(row)),
                     (false, true) => fixes.push(format!("{} in place of the closure", name(row))),
                     (true, false) => fixes.push(format!("a closure as the effect, `{CLOSURE}`")),

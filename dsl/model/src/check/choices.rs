@@ -118,7 +118,9 @@ fn has_option(row: &Row, name: &str) -> bool {
 
 /// Reports an effect that is given both as a closure and by name.
 fn closure_and_effect(draft: &Draft, choice: &Choice, diagnostics: &mut Diagnostics) {
-    if let Some(closure) = draft.resolve.as_ref().filter(|_| choice.axis.value == Registry::CLOSURE_AXIS) {
+    if let Some(closure) =
+        draft.resolve.as_ref().or(draft.between.as_ref()).filter(|_| choice.axis.value == Registry::CLOSURE_AXIS)
+    {
         diagnostics.push(
             Diagnostic::new(
                 codes::DUPLICATE,
@@ -180,7 +182,12 @@ fn default_choice(
     diagnostics: &mut Diagnostics,
 ) -> Option<AxisChoice> {
     let has_closure = draft.resolve.is_some() || draft.incomplete.resolve;
-    let closure = Some(Registry::CLOSURE).filter(|_| has_closure && axis.key == Registry::CLOSURE_AXIS);
+    let closure = match &draft.between {
+        Some(_) => Some(Registry::BETWEEN),
+        None if has_closure && !draft.images.is_empty() => Some(Registry::STEPS),
+        None => Some(Registry::CLOSURE).filter(|_| has_closure),
+    };
+    let closure = closure.filter(|_| axis.key == Registry::CLOSURE_AXIS);
     let preset = technique.and_then(|t| t.choices.iter().find(|(name, _)| *name == axis.key)).map(|(_, value)| *value);
     let suggested = earlier
         .iter()
@@ -190,7 +197,7 @@ fn default_choice(
         .map(|(_, value)| value.as_ref());
     let value = closure.or(preset).or(suggested).or(axis.default);
     let preset_span = draft.preset.as_ref().map_or(&draft.name.span, |preset| &preset.span);
-    let span = match (&draft.resolve, &draft.effect) {
+    let span = match (draft.resolve.as_ref().or(draft.between.as_ref()), &draft.effect) {
         (Some(function), _) if closure.is_some() => &function.span,
         (None, Some(effect)) if closure.is_some() => &effect.span,
         _ => preset_span,
@@ -234,7 +241,7 @@ fn selected_row(
 ) -> Option<SelectedRow> {
     registry.axis(&axis.value).filter(|axis| axis.chosen)?;
     let value = &alternative.value;
-    let Some(row) = registry.row(&axis.value, &value.value).filter(|row| row.key != Registry::CLOSURE) else {
+    let Some(row) = registry.row(&axis.value, &value.value).filter(|row| !Registry::is_of_closures(row)) else {
         if let Some(path) = alternative.file() {
             diagnostics.push(Diagnostic::new(
                 codes::MISSING_FILE,
@@ -244,8 +251,11 @@ fn selected_row(
             ));
             return None;
         }
-        let known: Vec<&str> =
-            registry.rows_of(&axis.value).map(|row| row.key.as_str()).filter(|key| *key != Registry::CLOSURE).collect();
+        let known: Vec<&str> = registry
+            .rows_of(&axis.value)
+            .filter(|row| !Registry::is_of_closures(row))
+            .map(|row| row.key.as_str())
+            .collect();
         diagnostics.push(Diagnostic::new(
             codes::UNKNOWN_VALUE,
             &value.span,

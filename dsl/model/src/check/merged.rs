@@ -56,7 +56,7 @@ impl Context<'_> {
         while left > 0 && changed.len() < MOST_CHANGES {
             let others = indices.iter().filter(|index| !changed.contains(index)).flat_map(|index| {
                 let others = self.registry.rows_of(&self.choices[*index].axis);
-                others.filter(|row| row.key != Registry::CLOSURE).map(move |row| (*index, row))
+                others.filter(|row| !Registry::is_of_closures(row)).map(move |row| (*index, row))
             });
             let tried = others.map(|(index, row)| {
                 let mut other = rows.clone();

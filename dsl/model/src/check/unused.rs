@@ -1,4 +1,4 @@
-//! Warns of attributes, uniforms, functions and variables that nothing uses.
+//! Warns of attributes, uniforms, textures, images, functions and variables that nothing uses.
 //!
 //! Input: a draft and its choices. Output: a warning per unused name, in the order of the source. Attributes that a choice reads are used:
 //! its condition, an option or its WGSL mentions them. The attributes of a preset are not the user's, so no warning names them.
@@ -21,6 +21,14 @@ pub(super) fn warnings(draft: &Draft, choices: &[AxisChoice]) -> Diagnostics {
         uniforms.filter(|name| !closures(draft).any(|closure| closure.reads.uniforms.contains(&name.value)));
     let mut warnings: Vec<Diagnostic> = unread.map(|(_, attribute)| unused_attribute(attribute)).collect();
     warnings.extend(unread_uniforms.map(unused_uniform));
+    let textures = draft.textures.iter().map(|texture| &texture.name);
+    let unread_textures =
+        textures.filter(|name| !closures(draft).any(|closure| closure.reads.textures.contains(&name.value)));
+    warnings.extend(unread_textures.map(|name| unused_texture(name, "texture")));
+    let images = draft.images.iter().map(|image| &image.name);
+    let unread_images =
+        images.filter(|name| !closures(draft).any(|closure| closure.reads.images.contains(&name.value)));
+    warnings.extend(unread_images.map(|name| unused_texture(name, "image")));
     warnings.extend(draft.unused.iter().map(unused_name));
     warnings.sort_by_key(|warning| (warning.span.line, warning.span.column));
     warnings.into_iter().collect()
@@ -29,7 +37,8 @@ pub(super) fn warnings(draft: &Draft, choices: &[AxisChoice]) -> Diagnostics {
 /// Returns the closures, which are the functions that passes call.
 fn closures(draft: &Draft) -> impl Iterator<Item = &UserFunction> {
     let criterion = draft.keep.as_ref().and_then(|keep| keep.criterion.as_ref());
-    criterion.into_iter().chain(&draft.constraints).chain(&draft.resolve)
+    let images = draft.images.iter().map(|image| &image.function);
+    criterion.into_iter().chain(&draft.constraints).chain(images).chain(&draft.between).chain(&draft.resolve)
 }
 
 /// Tests whether a closure or a choice reads an attribute.
@@ -82,6 +91,12 @@ fn unused_uniform(name: &Spanned<String>) -> Diagnostic {
         message,
         format!("remove `{0}`, or read it as `u.{0}`", name.value),
     )
+}
+
+fn unused_texture(name: &Spanned<String>, what: &str) -> Diagnostic {
+    let message = format!("no closure reads the {what} `{}`", name.value);
+    let help = format!("remove `{0}`, or read it as `u.{0}`", name.value);
+    Diagnostic::new(codes::UNUSED_UNIFORM, &name.span, message, help)
 }
 
 fn unused_name(unused: &Spanned<Unused>) -> Diagnostic {

@@ -147,9 +147,13 @@ impl Checker<'_, '_, '_> {
     /// Rejects a `let` of a value that WGSL cannot store in a variable.
     fn require_storable(&mut self, value: &Expr, ty: Type) {
         match self.inference.resolve(ty) {
-            Type::Uniforms | Type::Fragments => {
+            Type::Uniforms | Type::Fragments | Type::Texture(_) => {
                 let message = format!("{} cannot be stored in a variable", quoted(self.inference.name(ty)));
-                self.unsupported(value.span.clone(), message, "use the closure's parameter directly");
+                let help = match value.kind {
+                    Kind::Uniform(_) => "call its methods directly: `u.name.sample(…)`",
+                    _ => "use the closure's parameter directly",
+                };
+                self.unsupported(value.span.clone(), message, help);
             }
             Type::Unit => {
                 let message = "this expression has no value";

@@ -247,6 +247,7 @@ impl Checker<'_, '_, '_> {
                 Expr::error(span)
             }
             Type::Fragments => self.list_method(call, span, &name_span),
+            Type::Texture(shape) => self.texture_method((&receiver, shape), call, span, &name_span),
             Type::Unknown(_) => self.unknown_receiver(&receiver, call, span, &name_span),
             ty => self.method((receiver, &call.receiver), ty, &name, &arguments, span, &name_span),
         }

@@ -12,7 +12,7 @@ use super::mismatch::quoted;
 use super::noted::Noted;
 use crate::inspection::NameKind;
 use crate::tree::{Expr, Kind, Use};
-use crate::types::Type;
+use crate::types::{Shape, Type};
 use crate::{foreign_names, methods};
 
 const COMPONENTS: [&str; 4] = ["x", "y", "z", "w"];
@@ -79,7 +79,11 @@ impl Checker<'_, '_, '_> {
             return Expr::error(span);
         };
         self.note(name_span, || Noted::Uniform(name.clone(), *ty));
-        self.uses.push(Use::Uniform(name.clone()));
+        self.uses.push(match ty {
+            Type::Texture(Shape::Image) => Use::Image(name.clone()),
+            Type::Texture(_) => Use::Texture(name.clone()),
+            _ => Use::Uniform(name.clone()),
+        });
         Expr::new(Kind::Uniform(name), *ty, span)
     }
 

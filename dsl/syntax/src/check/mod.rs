@@ -22,6 +22,7 @@ mod noted;
 mod operators;
 mod paths;
 mod swizzles;
+mod texture_methods;
 mod unsupported;
 mod written_types;
 
@@ -36,6 +37,7 @@ use crate::types::Type;
 use checker::Checker;
 use noted::Noted;
 
+pub(crate) use texture_methods::TEXTURE_METHODS;
 pub(crate) use written_types::written_type;
 
 /// Checks one function; returns `None` if it has an error, or uses a name whose declaration has one.
@@ -67,7 +69,8 @@ fn signature(raw: &RawFunction, environment: &Environment) -> (Vec<Type>, Type) 
     match &raw.role {
         Role::Criterion => (vec![Type::Fragment, Type::Uniforms], Type::F32),
         Role::Constraint(_) => (vec![Type::Fragment, Type::Uniforms], Type::Bool),
-        Role::Resolve => (vec![Type::Fragments, Type::Uniforms], Type::Vector(4)),
+        Role::Resolve | Role::Image(_) => (vec![Type::Fragments, Type::Uniforms], Type::Vector(4)),
+        Role::Between => (vec![Type::Fragment, Type::Fragment, Type::F32, Type::Uniforms], Type::Vector(4)),
         Role::Helper(name) => {
             let signature = environment.helpers.iter().find(|signature| signature.name == *name);
             signature.map_or((Vec::new(), Type::Error), |signature| (signature.parameters.clone(), signature.result))
@@ -119,7 +122,7 @@ impl Checker<'_, '_, '_> {
                 _ => None,
             })
         };
-        let is_list = raw.role == Role::Resolve;
+        let is_list = raw.role.reads_list();
         let is_kept = |field: &str| match is_list {
             true => matches!(field, "[" | "in" | "len" | "iter" | "is_empty"),
             false => has(attributes, field) && !has(uniforms, field),
@@ -141,12 +144,14 @@ impl Checker<'_, '_, '_> {
     }
 
     fn count_of_parameters(&mut self, raw: &RawFunction) {
-        if matches!(raw.parameters.len(), 1 | 2) {
+        let usual = raw.role.usual_parameters();
+        let most = usual.len();
+        if [most - 1, most].contains(&raw.parameters.len()) {
             return;
         }
-        let first = if raw.role == Role::Resolve { "fragments" } else { "f" };
-        let message = format!("expected 1 or 2 parameters, found {}", raw.parameters.len());
-        let help = format!("write `|{first}|`, or `|{first}, u|` to read uniforms");
+        let message = format!("expected {} or {most} parameters, found {}", most - 1, raw.parameters.len());
+        let without = usual.get(..most - 1).unwrap_or_default().join(", ");
+        let help = format!("write `|{without}|`, or `|{}|` to read uniforms", usual.join(", "));
         self.report.error(codes::ARGUMENT_COUNT, &raw.span, message, help);
     }
 

@@ -8,6 +8,7 @@ use fragbuf_model::SourceSpan;
 use super::calls::CONSTRUCTORS;
 use super::checker::Checker;
 use super::list_methods::LIST_METHODS;
+use super::texture_methods::TextureMethod;
 use crate::constants;
 use crate::environment::Signature;
 use crate::inspection::{self, Candidate, Name, NameKind};
@@ -135,6 +136,13 @@ impl Checker<'_, '_, '_> {
                 let method =
                     |(name, signature): &(&str, &str)| candidate(name, NameKind::Method, (*signature).to_owned());
                 LIST_METHODS.iter().map(method).collect()
+            }
+            Type::Texture(shape) => {
+                let method = |method: &TextureMethod| Candidate {
+                    note: method.about.to_owned(),
+                    ..candidate(method.name, NameKind::Method, format!("fn {}", method.signature()))
+                };
+                TextureMethod::of(shape).map(method).collect()
             }
             _ => members(ty),
         };

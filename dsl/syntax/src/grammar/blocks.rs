@@ -2,7 +2,7 @@
 //!
 //! Input: a block in braces. Output: its declarations as written.
 
-use fragbuf_model::{Format, Spanned, UniformType};
+use fragbuf_model::{Format, Spanned, TextureDimension, UniformType};
 use proc_macro2::TokenTree;
 
 use super::cursor::Cursor;
@@ -11,13 +11,15 @@ use crate::foreign_names::{self, Replacement};
 use crate::names;
 use crate::report::{Report, Stop};
 
-/// The two blocks of declarations.
+/// The blocks of declarations.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum DeclarationBlock {
     /// `fragment { … }`
     Fragment,
     /// `uniform { … }`
     Uniform,
+    /// `texture { … }`
+    Texture,
 }
 
 impl DeclarationBlock {
@@ -26,6 +28,7 @@ impl DeclarationBlock {
         match self {
             DeclarationBlock::Fragment => "fragment { color: rgba8, depth: f32 }",
             DeclarationBlock::Uniform => "uniform { cut: f32 }",
+            DeclarationBlock::Texture => "texture { lut: 2d }",
         }
     }
 
@@ -34,6 +37,7 @@ impl DeclarationBlock {
         match self {
             DeclarationBlock::Fragment => Format::ALL.iter().any(|format| format.keyword() == word),
             DeclarationBlock::Uniform => UniformType::ALL.iter().any(|ty| ty.keyword() == word),
+            DeclarationBlock::Texture => TextureDimension::ALL.iter().any(|ty| ty.keyword() == word),
         }
     }
 
@@ -42,6 +46,7 @@ impl DeclarationBlock {
         match self {
             DeclarationBlock::Fragment => foreign_names::attribute_format(word),
             DeclarationBlock::Uniform => foreign_names::uniform_type(word),
+            DeclarationBlock::Texture => foreign_names::texture_dimension(word),
         }
     }
 
@@ -60,7 +65,11 @@ impl DeclarationBlock {
         if self.has_type(word) {
             return word.to_owned();
         }
-        self.foreign(word).and_then(|foreign| foreign.own).unwrap_or_else(|| "f32".to_owned())
+        self.foreign(word).and_then(|foreign| foreign.own).unwrap_or_else(|| self.usual_type().to_owned())
+    }
+
+    fn usual_type(self) -> &'static str {
+        if self == DeclarationBlock::Texture { "2d" } else { "f32" }
     }
 
     /// Returns the declaration of two words, of which either may be the type: in other languages the type is first.
@@ -107,8 +116,13 @@ fn declaration(cursor: &mut Cursor, block: DeclarationBlock, report: &mut Report
         return Err(cursor.expected("`:`", help, report));
     }
     let span = cursor.source_span(report);
-    let Some(type_name) = cursor.take_identifier() else { return Err(cursor.expected("a type", help(), report)) };
-    let type_name = Spanned::new(type_name.to_string(), span);
+    // `2d` is a literal with a suffix.
+    let type_name = match block {
+        DeclarationBlock::Texture => cursor.take_word(),
+        _ => cursor.take_identifier().map(|name| name.to_string()),
+    };
+    let Some(type_name) = type_name else { return Err(cursor.expected("a type", help(), report)) };
+    let type_name = Spanned::new(type_name, span);
     if !cursor.take_punct(',') && !cursor.is_done() {
         let (name, ty) = (&name.value, &type_name.value);
         let help = match cursor.peek() {

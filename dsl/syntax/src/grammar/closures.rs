@@ -30,7 +30,8 @@ pub(super) fn closure(
     let has_alternatives = cursor.at_keyword("else");
     if has_alternatives {
         let what = match role {
-            Role::Resolve => "the effect is",
+            Role::Resolve | Role::Between => "the effect is",
+            Role::Image(_) => "the image is",
             Role::Criterion => "k and the criterion are",
             _ => "the constraint is",
         };
@@ -79,6 +80,8 @@ fn require_closure(cursor: &Cursor, role: &Role, report: &mut Report) -> Result<
     let help = match role {
         Role::Criterion => format!("write `least |f| {}`", value.as_deref().unwrap_or("f.depth")),
         Role::Resolve => "write `resolve |fragments| { … }`, or name an effect: `resolve: over;`".to_owned(),
+        Role::Between => "write `between |front, back, gap| { … }`".to_owned(),
+        Role::Image(name) => format!("write `image {name} |fragments| {{ … }}`"),
         _ => format!("write `where |f| {};`", value.as_deref().unwrap_or("f.depth > 0.5")),
     };
     Err(cursor.expected("a closure", help, report))
@@ -333,7 +336,8 @@ fn reject_signature(signature: &syn::Signature, report: &mut Report) {
 }
 
 fn reject_generated_name(name: &Spanned<String>, report: &mut Report) {
-    let is_taken = name.value == "criterion" || name.value == "resolve" || name.value.starts_with("admit_");
+    let is_taken = ["criterion", "resolve", "between"].contains(&name.value.as_str())
+        || ["admit_", "image_"].iter().any(|prefix| name.value.starts_with(prefix));
     if is_taken {
         let message = format!("the name `{}` is used by generated code", name.value);
         report.error(

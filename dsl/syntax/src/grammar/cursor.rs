@@ -109,6 +109,17 @@ impl Cursor {
         }
     }
 
+    /// Takes the next token if it is an identifier or a number, which may have a suffix: `2d`.
+    pub(super) fn take_word(&mut self) -> Option<String> {
+        let word = match self.peek() {
+            Some(TokenTree::Ident(identifier)) => identifier.to_string(),
+            Some(TokenTree::Literal(number)) => number.to_string(),
+            _ => return None,
+        };
+        self.next += 1;
+        Some(word)
+    }
+
     /// Takes the next token if it is `{ … }`.
     pub(super) fn take_braces(&mut self) -> Option<Group> {
         match self.peek() {

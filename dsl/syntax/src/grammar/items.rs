@@ -10,11 +10,13 @@ use super::cursor::{Cursor, is_punct};
 use super::recovery::{end_of_item, recover, reject_alternatives, source_of_rest, starts_item};
 use super::{choices, closures, constants};
 use crate::items::Items;
+use crate::names;
 use crate::raw_function::Role;
 use crate::report::{Report, Stop};
 
 /// The keywords that start an item.
-pub(crate) const KEYWORDS: [&str; 6] = ["fragment", "uniform", "keep", "where", "resolve", "fn"];
+pub(crate) const KEYWORDS: [&str; 9] =
+    ["fragment", "uniform", "texture", "keep", "where", "image", "between", "resolve", "fn"];
 
 /// Words that users write for items, and how the language has them.
 const SYNONYMS: &[(&[&str], &str)] = &[
@@ -26,6 +28,9 @@ const SYNONYMS: &[(&[&str], &str)] = &[
     (&["effect", "shade", "color", "output", "composite", "blend"], "the effect is `resolve |fragments| { … }`"),
     (&["attributes", "attribute", "in", "struct"], "write `fragment { color: rgba8, depth: f32 }`"),
     (&["parameters", "params", "constants", "cbuffer"], "write `uniform { cut: f32 }`"),
+    (&["textures", "sampler", "sampler2D", "tex"], "write `texture { lut: 2d }`"),
+    (&["pass", "step", "buffer_pass"], "an image that the effect reads is `image name |fragments| { … }`"),
+    (&["pair", "stream", "gap"], "an effect of two neighbouring fragments is `between |front, back, gap| { … }`"),
     (&["function", "def", "func", "void"], "write `fn name(x: f32) -> f32 { … }`"),
 ];
 
@@ -57,10 +62,10 @@ fn part_of_item(cursor: &Cursor) -> Incomplete {
     let none = Incomplete::default();
     let Some(TokenTree::Ident(keyword)) = cursor.peek() else { return Incomplete::ALL };
     match nearest_name(&keyword.to_string(), &KEYWORDS) {
-        Some("resolve") => Incomplete { resolve: true, ..none },
+        Some("resolve" | "between") => Incomplete { resolve: true, ..none },
         _ if is_punct(cursor.peek_second(), ':') => Incomplete { choices: true, ..none },
         Some("fragment") => Incomplete { attributes: true, ..none },
-        Some("uniform") => Incomplete { uniforms: true, ..none },
+        Some("uniform" | "texture" | "image") => Incomplete { uniforms: true, ..none },
         Some("keep") => Incomplete { keep: true, ..none },
         Some("where") => none,
         Some("fn") => Incomplete { helpers: true, ..none },
@@ -88,9 +93,13 @@ fn item(items: &mut Items, cursor: &mut Cursor, report: &mut Report) -> Result<(
             let name = constants::reject(cursor, report);
             items.constants.extend(name);
         }
-        "fragment" | "uniform" if !matches!(cursor.peek_second(), Some(TokenTree::Group(_))) => {
+        "fragment" | "uniform" | "texture" if !matches!(cursor.peek_second(), Some(TokenTree::Group(_))) => {
             items.incomplete = items.incomplete.or(part_of_item(cursor));
-            let block = if keyword == "fragment" { DeclarationBlock::Fragment } else { DeclarationBlock::Uniform };
+            let block = match keyword.as_str() {
+                "fragment" => DeclarationBlock::Fragment,
+                "uniform" => DeclarationBlock::Uniform,
+                _ => DeclarationBlock::Texture,
+            };
             without_braces(&keyword, block, cursor, report);
         }
         "fragment" => {
@@ -107,6 +116,13 @@ fn item(items: &mut Items, cursor: &mut Cursor, report: &mut Report) -> Result<(
             items.incomplete.uniforms |= report.count() > errors;
             items.add_uniforms(rows, &span, report);
         }
+        "texture" => {
+            cursor.take();
+            let errors = report.count();
+            let rows = blocks::declarations(cursor, DeclarationBlock::Texture, report)?;
+            items.incomplete.uniforms |= report.count() > errors;
+            items.add_textures(rows, &span, report);
+        }
         "keep" => keep(items, cursor, span, report)?,
         "where" => {
             cursor.take();
@@ -120,6 +136,13 @@ fn item(items: &mut Items, cursor: &mut Cursor, report: &mut Report) -> Result<(
             let function = closures::closure(cursor, Role::Resolve, &mut items.function_tokens, report)?;
             items.add_resolve(function, &span, report);
         }
+        "between" => {
+            cursor.take();
+            items.effect.get_or_insert(cursor.source_span(report));
+            let function = closures::closure(cursor, Role::Between, &mut items.function_tokens, report)?;
+            items.add_resolve(function, &span, report);
+        }
+        "image" => image(items, cursor, report)?,
         "fn" => {
             let function = closures::helper(cursor, &mut items.function_tokens, report)?;
             items.add_helper(function, report);
@@ -186,6 +209,20 @@ fn keep(items: &mut Items, cursor: &mut Cursor, span: SourceSpan, report: &mut R
     Ok(())
 }
 
+/// Parses `image name |fragments, u| …`.
+fn image(items: &mut Items, cursor: &mut Cursor, report: &mut Report) -> Result<(), Stop> {
+    cursor.take();
+    let Some(name) = cursor.take_identifier() else {
+        let help = "write `image name |fragments| { … }`; closures after it read it as `u.name.at(1, 0)`";
+        return Err(cursor.expected("a name", help, report));
+    };
+    let name = names::declared(&names::written(&name, report), "image", report);
+    let role = Role::Image(name.value.clone());
+    let function = closures::closure(cursor, role, &mut items.function_tokens, report)?;
+    items.add_image(name, function, report);
+    Ok(())
+}
+
 fn unknown_item(cursor: &Cursor, keyword: Option<&str>, report: &mut Report) -> Stop {
     if cursor.at_punct('#') {
         closures::reject_attribute(&cursor.source_span(report), report);
@@ -207,7 +244,7 @@ fn unknown_item(cursor: &Cursor, keyword: Option<&str>, report: &mut Report) -> 
         _ if is_punct(cursor.peek_second(), '=') || matches!(cursor.peek_second(), Some(TokenTree::Ident(_))) => {
             format!("a choice has a colon: `{}: …;`", keyword.unwrap_or("axis"))
         }
-        _ => "items start with `fragment`, `uniform`, `keep`, `where`, `resolve`, `fn`, or `axis:`".to_string(),
+        _ => "items start with `fragment`, `uniform`, `texture`, `keep`, `where`, `image`, `between`, `resolve`, `fn`, or `axis:`".to_string(),
     };
     report.error(codes::UNEXPECTED_TOKEN, &cursor.source_span(report), message, help);
     Stop

@@ -11,7 +11,7 @@ use super::numbers;
 use super::source::ExprSource;
 use crate::fold::{self, Value};
 use crate::tree::{Expr, If, Kind, Operator};
-use crate::types::Type;
+use crate::types::{Shape, Type};
 
 impl Lowering<'_> {
     /// Writes the statements that an expression needs, and returns its source.
@@ -40,6 +40,11 @@ impl Lowering<'_> {
             Kind::Cast(inner) => self.cast(inner, expr),
             Kind::Method(spelling, arguments) => self.method(*spelling, arguments),
             Kind::Helper(index, arguments) => self.helper(*index, arguments),
+            Kind::Lookup(shape, name, method, arguments) => {
+                let sources = self.operands(&arguments.iter().collect::<Vec<_>>());
+                let kind = if *shape == Shape::Image { "image" } else { "texture" };
+                ExprSource::call(&format!("{method}_{kind}_{name}"), &sources)
+            }
             Kind::Vector(components) => self.vector(components, expr),
             Kind::If(branch) if self.is_select(branch, expr) => self.select(branch),
             Kind::Block(block) => match only_value(block) {

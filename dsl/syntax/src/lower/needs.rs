@@ -72,7 +72,7 @@ impl Lowering<'_> {
     /// Returns whether the expression can be evaluated where Rust does not evaluate it.
     fn is_safe(&self, expr: &Expr) -> bool {
         let itself = match &expr.kind {
-            Kind::Helper(..) | Kind::Layer(_) | Kind::LayerCount | Kind::Element(..) => false,
+            Kind::Helper(..) | Kind::Lookup(..) | Kind::Layer(_) | Kind::LayerCount | Kind::Element(..) => false,
             Kind::If(_) | Kind::Block(_) | Kind::For(_) | Kind::Assign { .. } => false,
             Kind::Return(_) | Kind::Break | Kind::Continue => false,
             _ => !self.needs_statements(expr),

@@ -1,7 +1,7 @@
 //! Writes the tables of resources, passes, files and counters.
 
 use fragbuf_templates::COUNTERS;
-use fragbuf_templates::vocabulary::{Element, Init, Kind, Lifetime, Objects, TextureFormat};
+use fragbuf_templates::vocabulary::{Element, Init, Kind, Lifetime, Objects, TextureDimension, TextureFormat};
 
 use super::Writer;
 use super::names::string;
@@ -41,6 +41,10 @@ impl Writer<'_> {
                 Element::Texture(format) | Element::ValueTextures(format) | Element::EntryTextures(format) => {
                     enumerator(format)
                 }
+                Element::Texels(dimension) => match dimension {
+                    TextureDimension::D2 => "FRAGBUF_TEXELS_2D",
+                    TextureDimension::D3 => "FRAGBUF_TEXELS_3D",
+                },
                 Element::Word | Element::Word64 | Element::Entry | Element::Value => "FRAGBUF_BUFFER",
             };
             let is_persistent = u32::from(resource.lifetime == Lifetime::Persistent);

@@ -21,6 +21,8 @@ typedef uint64_t (*fragbuf_formula)(const struct fragbuf_symbols *);
 /* The format of a resource. */
 enum fragbuf_format {
     FRAGBUF_BUFFER, /* a storage buffer */
+    FRAGBUF_TEXELS_2D, /* a texture of the description, of any size and any format of floats */
+    FRAGBUF_TEXELS_3D,
     FRAGBUF_R32_UINT,
     FRAGBUF_RG16_UINT,
     FRAGBUF_R32_FLOAT,

@@ -48,11 +48,11 @@ fn binding(context: &Context<'_>, binding: &Binding) -> Option<Value> {
         BindingKind::Storage { read_only, .. } => {
             value["type"] = if *read_only { "read-only-storage" } else { "storage" }.into();
         }
-        BindingKind::Texture { sample_type, multisampled } => {
+        BindingKind::Texture { sample_type, dimension, multisampled } => {
             let format = planned.and_then(format);
             value["type"] = "texture".into();
             value["sample_type"] = sample_name(*sample_type, *multisampled, format).into();
-            value["view_dimension"] = "2d".into();
+            value["view_dimension"] = dimension.keyword().into();
             value["multisampled"] = (*multisampled).into();
             value["aspect"] = aspect(*sample_type, format).into();
         }

@@ -18,6 +18,7 @@ fn resource(context: &Context<'_>, planned: &PlannedResource) -> Value {
         resource.extents.iter().map(|extent| json!({ "name": extent.name, "length": extent.length.0 })).collect();
     let element = match resource.element {
         Element::Texture(format) => format!("texture:{}", texture_format(format)),
+        Element::Texels(dimension) => format!("texels:{}", dimension.keyword()),
         Element::Word => "word".to_owned(),
         Element::Word64 => "word64".to_owned(),
         Element::Entry => "entry".to_owned(),
@@ -45,6 +46,7 @@ fn resource(context: &Context<'_>, planned: &PlannedResource) -> Value {
     });
     match resource.element {
         Element::Texture(format) => value["texture"] = texture(planned, format),
+        Element::Texels(dimension) => value["view_dimension"] = dimension.keyword().into(),
         _ => {
             let least = least_bytes(context, planned.binding);
             value["least_bytes"] = least.into();

@@ -225,6 +225,10 @@ impl Frame<'_> {
         let size = (self.device.settings.width, self.device.settings.height);
         let textures = program.textures.iter().map(|texture| {
             let found = texture.binding.and_then(|(_, binding)| planned(binding));
+            let described = texture.binding.and_then(|(_, binding)| self.device.textures.get(&binding));
+            if let Some(described) = described {
+                return Ok(BoundTexture::described(described));
+            }
             let (words, element) =
                 found.ok_or_else(|| unsupported(format!("`{}`, which the plan does not have", texture.name)))?;
             BoundTexture::of(texture, words, element, size)

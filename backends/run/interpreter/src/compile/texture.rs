@@ -1,6 +1,6 @@
-//! Compiles texture reads by column, row, and sample or level, and texture queries.
+//! Compiles texture reads by column, row, and sample, slice or level, and texture queries.
 //!
-//! Only 2D textures are read. Filtering, layers and writes are unsupported.
+//! Only 2D and 3D textures are read. Filtering, layers and writes are unsupported.
 
 use naga::{Expression, GlobalVariable, Handle, ImageClass, ImageDimension, ImageQuery, ScalarKind, TypeInner};
 
@@ -14,9 +14,10 @@ impl Compiler<'_> {
         let TypeInner::Image { dim, arrayed, class } = self.layouts.inner(variable.ty) else {
             return Err("samplers".to_owned());
         };
-        if *dim != ImageDimension::D2 || *arrayed {
-            return Err("a texture that is not 2D".to_owned());
+        if !matches!(dim, ImageDimension::D2 | ImageDimension::D3) || *arrayed {
+            return Err("a texture that is not 2D or 3D".to_owned());
         }
+        let is_3d = *dim == ImageDimension::D3;
         let (kind, is_depth, is_multisampled) = match class {
             ImageClass::Sampled { kind, multi } => (*kind, false, *multi),
             ImageClass::Depth { multi } => (ScalarKind::Float, true, *multi),
@@ -25,7 +26,7 @@ impl Compiler<'_> {
         let number = u16::try_from(self.textures.len()).map_err(|_| "more than 65536 textures".to_owned())?;
         let name = variable.name.clone().unwrap_or_default();
         let binding = variable.binding.map(|binding| (binding.group, binding.binding));
-        self.textures.push(Texture { name, binding, kind, is_depth, is_multisampled });
+        self.textures.push(Texture { name, binding, kind, is_depth, is_multisampled, is_3d });
         Ok(Value::Texture(number))
     }
 
@@ -43,8 +44,12 @@ impl Compiler<'_> {
             None => self.constant(0),
         };
         let coordinates = self.take(3);
-        self.push(Op::Copy { to: coordinates, from: coordinate, count: 2 });
-        self.push(Op::Copy { to: coordinates + 2, from: number, count: 1 });
+        if self.textures[usize::from(texture)].is_3d {
+            self.push(Op::Copy { to: coordinates, from: coordinate, count: 3 });
+        } else {
+            self.push(Op::Copy { to: coordinates, from: coordinate, count: 2 });
+            self.push(Op::Copy { to: coordinates + 2, from: number, count: 1 });
+        }
         let count = if self.textures[usize::from(texture)].is_depth { 1 } else { 4 };
         let to = self.take(count);
         self.push(Op::Texel { to, texture, coordinates, count });

@@ -12,7 +12,7 @@ pub trait LaneMemory {
     fn wide(&self, access: &Access) -> u64;
     /// Returns the four channels of the texel at a column, row, and sample or level. `None`: out of bounds.
     fn texel(&self, texture: u16, coordinates: [u32; 3]) -> Option<[u32; 4]>;
-    /// Returns the columns, rows and samples of a texture.
+    /// Returns the columns, rows, and samples or slices of a texture.
     fn extent(&self, texture: u16) -> [u32; 3];
 }
 

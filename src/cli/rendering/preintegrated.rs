@@ -1,0 +1,132 @@
+//! Pre-integrated tables of a transfer function (Röttger, Kraus & Ertl 2000; Engel, Kraus & Ertl 2001): the colour of a ray segment by the
+//! scalar at its front, the scalar at its back and its length, where the scalar is linear along the segment.
+//!
+//! Input: the texels of a transfer function, and settings. Output: a table of three dimensions. The first and the last texel along each
+//! axis are the ends of its range: scalars from 0 to 1, lengths from 0 to that of the settings.
+
+/// What a table is computed with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Settings {
+    /// Texels along both axes of scalars.
+    scalars: u32,
+    /// Texels along the axis of lengths.
+    lengths: u32,
+    /// The greatest length, in units of the scene.
+    length: f32,
+    /// The extinction per unit of length where the transfer function has the alpha 1.
+    extinction: f32,
+}
+
+/// The steps of the numerical integral of a segment.
+const STEPS: u32 = 64;
+
+/// The most texels along an axis.
+const MOST: u32 = 256;
+
+impl Settings {
+    /// Reads options.
+    pub(super) fn parse(options: &[(&str, &str)]) -> Result<Self, String> {
+        let mut settings = Settings { scalars: 64, lengths: 32, length: 1.0, extinction: 1.0 };
+        for (name, value) in options {
+            let texels = || {
+                let number = value.parse().ok().filter(|number| (2..=MOST).contains(number));
+                number.ok_or(format!("`{name}` takes a whole number from 2 to {MOST}"))
+            };
+            let positive = || {
+                let number = value.parse().ok().filter(|number: &f32| number.is_finite() && *number > 0.0);
+                number.ok_or(format!("`{name}` takes a number above 0"))
+            };
+            match *name {
+                "scalars" => settings.scalars = texels()?,
+                "lengths" => settings.lengths = texels()?,
+                "length" => settings.length = positive()?,
+                "extinction" => settings.extinction = positive()?,
+                _ => {
+                    return Err(format!(
+                        "a pre-integrated table has no option `{name}`: it has scalars, lengths, length and extinction"
+                    ));
+                }
+            }
+        }
+        Ok(settings)
+    }
+
+    /// Returns the bytes of the table.
+    pub(super) fn bytes(&self) -> u64 {
+        u64::from(self.scalars) * u64::from(self.scalars) * u64::from(self.lengths) * size_of::<[f32; 4]>() as u64
+    }
+}
+
+/// Returns the size and the texels of the table: premultiplied colours.
+pub(super) fn table(transfer: &[[f32; 4]], settings: &Settings) -> ([u32; 3], Vec<[f32; 4]>) {
+    let Settings { scalars, lengths, length, extinction } = *settings;
+    let share = |index: u32, count: u32| f64::from(index) / f64::from(count.max(2) - 1);
+    let mut texels = Vec::with_capacity((scalars * scalars * lengths) as usize);
+    for slice in 0..lengths {
+        for row in 0..scalars {
+            for column in 0..scalars {
+                let (front, back) = (share(column, scalars), share(row, scalars));
+                let depth = share(slice, lengths) * f64::from(length * extinction);
+                texels.push(segment(transfer, (front, back), depth));
+            }
+        }
+    }
+    ([scalars, scalars, lengths], texels)
+}
+
+/// Integrates emission and absorption along a segment, by the midpoint of each step. `depth`: its length in units of the extinction.
+fn segment(transfer: &[[f32; 4]], (front, back): (f64, f64), depth: f64) -> [f32; 4] {
+    let (mut color, mut transmittance) = ([0.0_f64; 3], 1.0_f64);
+    for step in 0..STEPS {
+        let along = (f64::from(step) + 0.5) / f64::from(STEPS);
+        let [red, green, blue, alpha] = value(transfer, front + (back - front) * along);
+        let passes = (-alpha * depth / f64::from(STEPS)).exp();
+        for (sum, channel) in color.iter_mut().zip([red, green, blue]) {
+            *sum += transmittance * (1.0 - passes) * channel;
+        }
+        transmittance *= passes;
+    }
+    let [red, green, blue] = color.map(|channel| channel as f32);
+    [red, green, blue, (1.0 - transmittance) as f32]
+}
+
+/// Returns the transfer function at a scalar from 0 to 1, linear between texels.
+fn value(transfer: &[[f32; 4]], scalar: f64) -> [f64; 4] {
+    let last = transfer.len().saturating_sub(1);
+    let place = scalar.clamp(0.0, 1.0) * last as f64;
+    let first = place.floor() as usize;
+    let texel = |index: usize| transfer.get(index.min(last)).copied().unwrap_or_default().map(f64::from);
+    let (near, far) = (texel(first), texel(first + 1));
+    std::array::from_fn(|channel| near[channel] + (far[channel] - near[channel]) * (place - first as f64))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Settings, table};
+
+    /// Where the transfer function is constant, a segment has the opacity 1 - exp(-τ d) (Beer–Lambert).
+    #[test]
+    fn a_constant_medium_absorbs_by_beer_and_lambert() {
+        let settings = Settings::parse(&[("scalars", "2"), ("lengths", "3"), ("length", "2"), ("extinction", "3")]);
+        let settings = settings.unwrap();
+        let ([width, height, slices], texels) = table(&[[0.5, 0.25, 1.0, 0.5]], &settings);
+        assert_eq!((width, height, slices, texels.len()), (2, 2, 3, 12));
+        for (index, texel) in texels.iter().enumerate() {
+            let depth = 0.5 * 3.0 * (index / 4) as f32;
+            let opacity = 1.0 - (-depth).exp();
+            let expected = [0.5 * opacity, 0.25 * opacity, opacity, opacity];
+            assert!(texel.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1.0e-6), "{texel:?} {expected:?}");
+        }
+    }
+
+    /// The nearer half of a segment hides the farther one: swapped scalars give other colours and the same opacity.
+    #[test]
+    fn the_order_along_the_ray_counts() {
+        let transfer = [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]];
+        let (_, texels) = table(&transfer, &Settings::parse(&[("scalars", "2"), ("length", "4")]).unwrap());
+        let last = &texels[texels.len() - 4..];
+        let (green_first, red_first) = (last[1], last[2]);
+        assert!(red_first[0] > red_first[1] + 0.2 && green_first[1] > green_first[0] + 0.2);
+        assert!((red_first[3] - green_first[3]).abs() < 1.0e-6);
+    }
+}
