@@ -151,8 +151,8 @@ pub(crate) const EFFECTS: &[Effect] = &[
             ("--size", "960x540"),
             ("--camera", "orbit:15,20"),
             ("--background", "0,0,0,1"),
-            ("--uniform", "near=0.78"),
-            ("--uniform", "far=0.95"),
+            ("--uniform", "near=0.5"),
+            ("--uniform", "far=0.92"),
         ]
     ),
 ];
