@@ -155,4 +155,33 @@ pub(crate) const EFFECTS: &[Effect] = &[
             ("--uniform", "far=0.92"),
         ]
     ),
+    row!(
+        "silhouettes",
+        "lines where the depth jumps, and normals, both by differences between pixels",
+        "B06 §4.1",
+        reads: Some(1),
+        &[
+            ("--scene", "builtin:knot,turns=5,thickness=24,rings=600,sides=48"),
+            ("--size", "960x540"),
+            ("--camera", "orbit:15,20"),
+            ("--shading", "unlit"),
+            ("--uniform", "camera=camera"),
+            ("--uniform", "jump=0.02"),
+        ]
+    ),
+    row!(
+        "depth_of_field",
+        "a foreground and a background that are blurred alone",
+        "B06 §4.2",
+        reads: None,
+        &[
+            ("--scene", "builtin:marbles,n=400,seed=2"),
+            ("--size", "960x540"),
+            ("--camera", "orbit:15,20,zoom:2"),
+            ("--shading", "unlit"),
+            ("--uniform", "camera=camera"),
+            ("--uniform", "near=2.3"),
+            ("--uniform", "far=3"),
+        ]
+    ),
 ];

@@ -7,6 +7,7 @@
 
 mod colors;
 mod crossings;
+mod images;
 mod layers;
 mod ray;
 mod solids;
@@ -31,8 +32,14 @@ pub struct Effect {
     scene: fn() -> Solids,
     /// A part of the description and what replaces it to give a wrong image.
     mutation: (&'static str, &'static str),
-    /// Returns the premultiplied colour of a ray that hits something.
-    color: fn(&Ray<'_>) -> [f64; 4],
+    color: Reference,
+}
+
+/// Returns the premultiplied colour of a ray that hits something.
+enum Reference {
+    OfRay(fn(&Ray<'_>) -> [f64; 4]),
+    /// By the rays of other pixels as well; `None`: one of them is not compared.
+    OfNeighbours(fn(&Ray<'_>) -> Option<[f64; 4]>),
 }
 
 /// A technique with its k; `None`: it keeps all fragments.
@@ -72,9 +79,19 @@ const PEELED: &[Storage] =
 /// Storages for the two nearest fragments. Peeling keeps one fragment of equal depths, or all of them.
 const TWO: &[Storage] = &[("kplus_array", Some(2)), ("ab_sb", None), ("mdt32_coplanar", Some(2)), ("f2b_ll", None)];
 
+/// Storages for the nearest fragment.
+const NEAREST: &[Storage] =
+    &[("kplus_array", Some(1)), ("ab_sb", None), ("mdt32_coplanar", Some(1)), ("kplus_heap", Some(2))];
+
 /// Names an effect with the text of its description.
 macro_rules! effect {
+    ($name:literal, $uniforms:expr, $scene:ident over $storages:expr, $mutation:expr, neighbours $color:expr) => {
+        effect!($name, $uniforms, $scene over $storages, $mutation; Reference::OfNeighbours($color))
+    };
     ($name:literal, $uniforms:expr, $scene:ident over $storages:expr, $mutation:expr, $color:expr) => {
+        effect!($name, $uniforms, $scene over $storages, $mutation; Reference::OfRay($color))
+    };
+    ($name:literal, $uniforms:expr, $scene:ident over $storages:expr, $mutation:expr; $color:expr) => {
         Effect {
             name: $name,
             text: include_str!(concat!("../../../examples/effects/", $name, ".fragbuf")),
@@ -123,6 +140,24 @@ pub const EFFECTS: &[Effect] = &[
     ),
     effect!("complexity", &[("most", Number::F32(colors::MOST))], open over ALL, ("0.95", "0.9"), colors::complexity),
     effect!(
+        "silhouettes",
+        &[("camera", Number::Vec3(layers::CAMERA)), ("jump", Number::F32(images::JUMP))],
+        open over NEAREST,
+        ("> u.jump", "> 2.0 * u.jump"),
+        neighbours images::silhouettes
+    ),
+    effect!(
+        "depth_of_field",
+        &[
+            ("camera", Number::Vec3(layers::CAMERA)),
+            ("near", Number::F32(images::NEAR)),
+            ("far", Number::F32(images::FAR)),
+        ],
+        open over ALL,
+        ("> u.far", "> 1.02 * u.far"),
+        neighbours images::depth_of_field
+    ),
+    effect!(
         "midpoint",
         &[("near", Number::F32(colors::NEAR)), ("far", Number::F32(colors::FAR))],
         open over TWO,
@@ -155,7 +190,11 @@ impl Effect {
         let image: Vec<Option<[f64; 3]>> = pixels
             .map(|pixel| {
                 let ray = Ray::through(solids, pixel)?;
-                let [r, g, b, a] = if ray.hits.is_empty() { [0.0; 4] } else { (self.color)(&ray) };
+                let [r, g, b, a] = match self.color {
+                    _ if ray.hits.is_empty() => [0.0; 4],
+                    Reference::OfRay(color) => color(&ray),
+                    Reference::OfNeighbours(color) => color(&ray)?,
+                };
                 Some(std::array::from_fn(|channel| [r, g, b][channel] + (1.0 - a) * BACKGROUND[channel]))
             })
             .collect();
@@ -176,7 +215,7 @@ impl Effect {
         let mut colors = compared.clone();
         colors.sort_unstable();
         colors.dedup();
-        assert!(5 * compared.len() > 4 * image.len(), "{}: {} pixels are compared", self.name, compared.len());
+        assert!(3 * compared.len() > 2 * image.len(), "{}: {} pixels are compared", self.name, compared.len());
         assert!(colors.len() >= 5, "{}: {} colours", self.name, colors.len());
     }
 }

@@ -3,7 +3,7 @@
 use super::solids::{SIZE, Solids, Triangle};
 
 /// The least distance of the centre of a pixel from an edge, in pixels: rasterisers round positions.
-const EDGE: f64 = 1.0 / 64.0;
+const EDGE: f64 = 1.0 / 512.0;
 
 /// Depths of a device that differ by less may be in another order.
 const NEARLY: f64 = 1e-4;
@@ -17,6 +17,7 @@ pub struct Ray<'a> {
     /// From the nearest to the farthest. Of equal depths, the lesser id is first.
     pub hits: Vec<Hit<'a>>,
     point: [f64; 2],
+    pixel: [u32; 2],
 }
 
 /// A point where a ray hits a triangle.
@@ -46,7 +47,13 @@ impl<'a> Ray<'a> {
         if gaps.into_iter().any(|gap| (EQUAL..NEARLY).contains(&gap)) {
             return None;
         }
-        Some(Ray { solids, hits, point })
+        Some(Ray { solids, hits, point, pixel: [x, y] })
+    }
+
+    /// Returns the ray of a pixel so many columns to the right and rows below; beyond the border, of the nearest one.
+    pub fn neighbour(&self, [right, down]: [i32; 2]) -> Option<Self> {
+        let clamped = |at: u32, by: i32, size: u32| at.saturating_add_signed(by).min(size - 1);
+        Ray::through(self.solids, [clamped(self.pixel[0], right, SIZE[0]), clamped(self.pixel[1], down, SIZE[1])])
     }
 
     /// Returns the parts between different depths, from near to far.
