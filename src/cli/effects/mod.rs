@@ -68,6 +68,16 @@ fn is_value_of(word: &OsString, option: &str) -> bool {
     word.to_str().and_then(|word| word.strip_prefix(option)).is_some_and(|rest| rest.starts_with('='))
 }
 
+#[cfg(feature = "playground")]
+impl Effect {
+    /// Returns the caption of its picture: its name and what it shows.
+    pub(crate) fn caption(&self) -> String {
+        let name = self.name.replace('_', " ");
+        let (first, rest) = name.split_at(1);
+        format!("{}{rest}: {}", first.to_uppercase(), self.summary)
+    }
+}
+
 /// Returns the table of effects as Markdown.
 pub(crate) fn markdown() -> String {
     let row = |effect: &Effect| {

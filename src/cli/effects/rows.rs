@@ -40,9 +40,9 @@ pub(crate) const EFFECTS: &[Effect] = &[
         "B06 §4.1",
         reads: None,
         &[
-            ("--scene", "builtin:knot,rings=400,sides=48"),
+            ("--scene", "builtin:knot,turns=5,thickness=17,rings=600,sides=48"),
             ("--size", "960x540"),
-            ("--camera", "orbit:90,60,zoom:1.15"),
+            ("--camera", "orbit:15,20"),
             ("--uniform", "absorption=3.2,0.8,2.0"),
             ("--uniform", "camera=camera"),
             ("--set", "samples=coverage"),
@@ -56,6 +56,7 @@ pub(crate) const EFFECTS: &[Effect] = &[
         &[
             ("--scene", "builtin:cubes"),
             ("--size", "960x540"),
+            ("--camera", "eye:1.3,1.9,1.8,target:-0.5,0,0.1,fov:36"),
             ("--shading", "unlit"),
             ("--set", "samples=coverage"),
         ]
@@ -66,11 +67,11 @@ pub(crate) const EFFECTS: &[Effect] = &[
         "D13 §4",
         reads: None,
         &[
-            ("--scene", "builtin:knot,rings=90,sides=12"),
+            ("--scene", "builtin:knot,turns=5,thickness=17,rings=150,sides=10"),
             ("--size", "960x540"),
             ("--camera", "orbit:15,20"),
             ("--shading", "unlit"),
-            ("--uniform", "width=0.012"),
+            ("--uniform", "width=0.014"),
             ("--uniform", "alpha=0.35"),
             ("--set", "samples=coverage"),
         ]
@@ -83,7 +84,7 @@ pub(crate) const EFFECTS: &[Effect] = &[
         &[
             ("--scene", "builtin:knot,turns=5,thickness=50,rings=500,sides=48"),
             ("--size", "960x540"),
-            ("--camera", "orbit:15,20,zoom:1.15"),
+            ("--camera", "orbit:15,20,zoom:1.05"),
             ("--shading", "unlit"),
             ("--uniform", "alpha=0.3"),
             ("--set", "samples=coverage"),
@@ -123,7 +124,7 @@ pub(crate) const EFFECTS: &[Effect] = &[
         "D13 Fig. 13",
         reads: None,
         &[
-            ("--scene", "builtin:layers,n=40,coplanar=4,pixels=60,fragments=40"),
+            ("--scene", "builtin:layers,n=9,coplanar=3,fragments=30"),
             ("--size", "960x540"),
             ("--camera", "clip"),
         ]
@@ -134,10 +135,10 @@ pub(crate) const EFFECTS: &[Effect] = &[
         "D13 §4",
         reads: None,
         &[
-            ("--scene", "builtin:marbles,n=400"),
+            ("--scene", "builtin:needles,n=6000"),
             ("--size", "960x540"),
-            ("--camera", "orbit:0,35,zoom:1.25"),
-            ("--uniform", "most=20"),
+            ("--camera", "orbit:15,20,zoom:1.5"),
+            ("--uniform", "most=80"),
             ("--set", "samples=coverage"),
         ]
     ),
