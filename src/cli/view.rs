@@ -19,7 +19,7 @@ use super::picture;
 
 #[derive(Clone, clap::Args)]
 pub(crate) struct View {
-    /// Model file (.obj, .ply, .gltf, .glb, also .gz), or a generated scene: builtin:NAME[,parameter=value]
+    /// Model file (.obj, .ply, .gltf, .glb, .vtk, .vtu, also .gz), or a generated scene: builtin:NAME[,parameter=value]
     #[arg(long, value_name = "PATH|builtin:NAME")]
     pub(crate) scene: String,
     /// Scene to draw first as opaque geometry. Its image is the background; its depth buffer hides fragments behind it. The
@@ -326,13 +326,20 @@ pub(crate) fn picture_path(text: &str) -> Result<PathBuf, String> {
     }
 }
 
-/// Returns the list of generated scenes that the help shows.
+/// Returns the list of generated scenes that the help shows, each with its parameters and the attributes of its vertices.
 pub(crate) fn scenes() -> String {
     let mut text = "Generated scenes:\n".to_owned();
     for row in BUILTIN_SCENES {
         let parameters: Vec<String> =
             row.parameters.iter().map(|parameter| format!("{}={}", parameter.name, parameter.default)).collect();
-        text.push_str(&format!("  builtin:{:10}{}  [{}]\n", row.name, row.summary, parameters.join(", ")));
+        let attribute = |attribute: &fragbuf_scene::Attribute| match (attribute.is_integer, attribute.components) {
+            (true, _) => format!("{}: u32", attribute.name),
+            (false, 1) => format!("{}: f32", attribute.name),
+            (false, components) => format!("{}: vec{components}", attribute.name),
+        };
+        let attributes: Vec<String> = row.attributes.iter().map(attribute).collect();
+        let attributes = if attributes.is_empty() { String::new() } else { format!("  {{{}}}", attributes.join(", ")) };
+        text.push_str(&format!("  builtin:{:10}{}  [{}]{attributes}\n", row.name, row.summary, parameters.join(", ")));
     }
     text
 }

@@ -38,7 +38,7 @@ pub(crate) struct Predict {
     /// Set a uniform of the description [default: 0]
     #[arg(long = "uniform", value_name = "NAME=VALUE[,VALUE]", value_parser = uniform)]
     uniforms: Vec<(String, String)>,
-    /// Model file (.obj, .ply, .gltf, .glb, also .gz), or a generated scene: builtin:NAME[,parameter=value]
+    /// Model file (.obj, .ply, .gltf, .glb, .vtk, .vtu, also .gz), or a generated scene: builtin:NAME[,parameter=value]
     #[arg(long, value_name = "PATH|builtin:NAME")]
     scene: String,
     /// Size of the image in pixels

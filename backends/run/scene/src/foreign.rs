@@ -30,6 +30,8 @@ const MODELS: &[(&[u8], &str, &str)] = &[
     (b"ply\n", "a PLY", "ply"),
     (b"ply\r", "a PLY", "ply"),
     (b"glTF", "a binary glTF", "glb"),
+    (b"# vtk DataFile", "a VTK file", "vtk"),
+    (b"<VTKFile", "an XML file of VTK", "vtu"),
     (b"{", "JSON", "gltf"),
 ];
 
@@ -48,8 +50,11 @@ pub(crate) fn check(bytes: &[u8], extension: &str) -> Result<(), FileError> {
             start.is_some_and(|start| start.eq_ignore_ascii_case(with))
         })
     };
-    if let Some((_, what, fix)) = MAGIC.iter().find(|(magic, ..)| begins(magic)) {
-        let fix = if fix.is_empty() { "give an OBJ, a PLY or a glTF" } else { fix };
+    // The name of the root follows what is compared.
+    let is_vtk = |extension: &str| ["vtk", "vtu"].contains(&extension);
+    let may_be_vtk = is_vtk(extension) && begins(b"<?xml");
+    if let Some((_, what, fix)) = MAGIC.iter().find(|(magic, ..)| begins(magic) && !may_be_vtk) {
+        let fix = if fix.is_empty() { "give an OBJ, a PLY, a glTF or a VTK" } else { fix };
         return Err(FileError::whole(format!("the file is {what}: {fix}")));
     }
     // Both kinds of glTF may have either extension.
@@ -57,7 +62,13 @@ pub(crate) fn check(bytes: &[u8], extension: &str) -> Result<(), FileError> {
     if is_gltf(extension) && !begins(b"{") && !begins(b"glTF") {
         return Err(FileError::whole("the file is no glTF, which begins with `{` or, in a binary file, with `glTF`"));
     }
-    let fits = |other: &str| other == extension || (is_gltf(other) && is_gltf(extension));
+    if is_vtk(extension) && !may_be_vtk && !begins(b"# vtk DataFile") && !begins(b"<VTKFile") {
+        return Err(FileError::whole(
+            "the file is no VTK, which begins with `# vtk DataFile` or, in XML, with `<?xml` or `<VTKFile`",
+        ));
+    }
+    let is_same = |is_one: &dyn Fn(&str) -> bool, other: &str| is_one(other) && is_one(extension);
+    let fits = |other: &str| other == extension || is_same(&is_gltf, other) || is_same(&is_vtk, other);
     match MODELS.iter().find(|(magic, ..)| begins(magic)) {
         Some((_, what, other)) if !fits(other) => Err(FileError::whole(format!(
             "the file is {what}, and its extension is .{extension}: rename it to .{other}"

@@ -1,6 +1,6 @@
 //! Scenes: triangles with normals, colours and objects, from a model file or generated.
 //!
-//! Input: the path of an OBJ, PLY or glTF model, or `builtin:NAME[,parameter=value]`. Output: a complete and checked
+//! Input: the path of an OBJ, PLY, glTF or VTK model, or `builtin:NAME[,parameter=value]`. Output: a complete and checked
 //! [`Scene`]: finite numbers, indices in range, a normal and a colour for every vertex, and the attributes that the caller requests. A
 //! malformed model is never corrected silently: it is an [`Error`] with its position, or a [`Warning`] where other readers of the
 //! format go on, too. A scene beyond the [`Limits`] is an error before its memory is allocated. This crate is independent of fragment buffers and devices.
@@ -28,11 +28,13 @@ mod presort;
 mod scene;
 mod shading;
 mod subdivision;
+mod tetrahedra;
 mod text;
+mod vtk;
 mod warnings;
 
 pub use attribute::{AttributeRequest, AvailableAttribute};
-pub use builtin::{BUILTIN_SCENES, BuiltinScene, Parameter};
+pub use builtin::{Attribute, BUILTIN_SCENES, BuiltinScene, Parameter};
 pub use camera::{Camera, CameraError, Eye, FIELD_OF_VIEW};
 pub use corners::edge_distances;
 pub use disorder::disorder;

@@ -136,6 +136,8 @@ impl Budget {
     pub(crate) fn object(&self, object: &crate::Object) -> Result<(), FileError> {
         self.take(1, OBJECT + object.name.len() as u64, "the scene's objects")?;
         self.take(object.positions.len() as u64, VERTEX, "the scene's vertices")?;
+        let words = object.attributes.iter().map(|words| words.len() as u64).sum();
+        self.take(words, size_of::<u32>() as u64, "the attributes of the scene")?;
         self.triangles(object.triangles.len() as u64)
     }
 

@@ -7,7 +7,7 @@ use crate::file::{beside, read};
 use crate::limits::Budget;
 use crate::warnings::{FileWarnings, Message, WarningKind, Warnings};
 use crate::{
-    AttributeRequest, BuiltinScene, Limits, Scene, Warning, foreign, gltf, normals, obj, placement, ply, text,
+    AttributeRequest, BuiltinScene, Limits, Scene, Warning, foreign, gltf, normals, obj, placement, ply, text, vtk,
 };
 
 /// Opens the scene `name`. `color` is the colour of parts for which the model gives none: linear, straight alpha.
@@ -15,7 +15,7 @@ pub fn open(name: &str, color: [f32; 4], limits: &Limits) -> Result<Scene, Error
     open_with(name, color, &[], limits)
 }
 
-/// Opens a scene like [`open`], with attributes of its vertices. `Err`: it does not have one of them, which is not optional; generated scenes have none.
+/// Opens a scene like [`open`], with attributes of its vertices. `Err`: it does not have one of them, which is not optional.
 pub fn open_with(
     name: &str,
     color: [f32; 4],
@@ -25,12 +25,10 @@ pub fn open_with(
     let Some(builtin) = name.strip_prefix("builtin:") else {
         return load_with(Path::new(name), color, attributes, limits);
     };
-    let scene = builtin.parse::<BuiltinScene>()?;
-    none_of(attributes).map_err(|error| error.in_file(name))?;
-    scene.generate(limits)
+    builtin.parse::<BuiltinScene>()?.generate_with(attributes, limits)
 }
 
-/// Loads a model: OBJ, PLY, glTF or GLB by its extension, optionally compressed as `.gz`.
+/// Loads a model: OBJ, PLY, glTF, GLB, or VTK (`.vtk`, `.vtu`) by its extension, optionally compressed as `.gz`.
 pub fn load(path: &Path, color: [f32; 4], limits: &Limits) -> Result<Scene, Error> {
     load_with(path, color, &[], limits)
 }
@@ -50,9 +48,10 @@ pub fn load_with(
     // What cannot be opened is the same error for every extension.
     let is_regular = std::fs::metadata(path).is_ok_and(|metadata| metadata.is_file());
     let Some(extension) = extension.or(Some("").filter(|_| !is_regular)) else {
-        return Err(
-            FileError::whole("unknown extension: use .obj, .ply, .gltf or .glb, optionally with .gz").in_file(&file)
-        );
+        return Err(FileError::whole(
+            "unknown extension: use .obj, .ply, .gltf, .glb, .vtk or .vtu, optionally with .gz",
+        )
+        .in_file(&file));
     };
     let (budget, warnings) = (Budget::with_attributes(limits, attributes), Warnings::default());
     let bytes = read(path, &budget)?;
@@ -69,6 +68,11 @@ pub fn load_with(
         "ply" => {
             let bytes = text::without_mark(&bytes);
             let objects = ply::parse(bytes, (color, attributes), (&budget, warnings.in_file(&file)));
+            objects.map_err(|error| error.in_file(&file))?
+        }
+        "vtk" | "vtu" => {
+            let bytes = text::without_mark(&bytes);
+            let objects = vtk::parse(bytes, (color, attributes), (&budget, warnings.in_file(&file)));
             objects.map_err(|error| error.in_file(&file))?
         }
         _ => gltf::parse(&bytes, path, (color, attributes), (&budget, warnings.in_file(&file)))?,
@@ -104,7 +108,7 @@ fn without_triangles(file: &str, warnings: &[Warning]) -> Error {
 }
 
 /// The extensions of models. Without one of them a file is not opened.
-const EXTENSIONS: [&str; 4] = ["obj", "ply", "gltf", "glb"];
+const EXTENSIONS: [&str; 6] = ["obj", "ply", "gltf", "glb", "vtk", "vtu"];
 
 /// The greatest number of parts that are removed from the end of a statement to find the name of its first library.
 const MAX_PARTS: usize = 16;

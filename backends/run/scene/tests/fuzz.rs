@@ -11,6 +11,8 @@ use base64::Engine as _;
 use fragbuf_scene::{AttributeRequest, Error, FilePosition, Limits, Scene, load, load_with};
 use tempfile::TempDir;
 
+mod vtk_files;
+
 /// The number of models that the test command tries.
 const MODELS: u64 = 10_000;
 
@@ -89,6 +91,20 @@ fn models() -> Vec<Model> {
         ("m.gltf", beside.into(), Some(("a b.bin", buffer.clone()))),
         ("m.glb", glb(&GLTF.replace("BUFFER", ""), &buffer), None),
     ]
+    .into_iter()
+    .chain(vtk_files::files().into_iter().map(|(name, bytes)| (name, with_own(&bytes), None)))
+    .collect()
+}
+
+/// Returns a file of VTK with the attribute `own`.
+fn with_own(bytes: &[u8]) -> Vec<u8> {
+    let (mut own, mut rest) = (Vec::new(), bytes);
+    while let Some(at) = rest.windows(4).position(|window| window == b"heat") {
+        own.extend_from_slice(&rest[..at]);
+        own.extend_from_slice(b"own");
+        rest = &rest[at + 4..];
+    }
+    [own, rest.to_vec()].concat()
 }
 
 fn binary_ply(is_big: bool) -> Vec<u8> {

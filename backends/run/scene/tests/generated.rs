@@ -109,7 +109,7 @@ fn unknown_names_list_the_known_ones() {
     };
     assert_eq!(
         error("builtin:bunny"),
-        "no scene `builtin:bunny`: the scenes are cubes, slabs, layers, marbles, hairball, needles, slivers, knot"
+        "no scene `builtin:bunny`: the scenes are cubes, slabs, layers, marbles, hairball, needles, slivers, tets, particles, part, building, knot"
     );
     assert_eq!(error("builtin:slabs,k=3"), "`builtin:slabs` has no `k`: its parameters are n (16), seed (1)");
     let advice = "write a whole number from 1 to 65536, as `n=16`";
@@ -149,4 +149,128 @@ fn light_comes_from_the_eye_and_is_two_sided() {
     light(&mut made, Eye::Along([1.0, 0.0, 0.0]));
     assert!((made.objects[0].colors[0][0] - 0.2 * unlit[0]).abs() < 1.0e-6);
     assert_eq!(made.objects[0].colors[0][3], unlit[3]);
+}
+
+/// Returns the triangles of an object by their positions.
+fn triangles(object: &fragbuf_scene::Object) -> Vec<[[f32; 3]; 3]> {
+    object.triangles.iter().map(|corners| corners.map(|index| object.positions[index as usize])).collect()
+}
+
+/// Returns the volume within triangles whose front side is outside.
+fn volume(triangles: &[[[f32; 3]; 3]]) -> f64 {
+    let one = |[a, b, c]: &[[f32; 3]; 3]| {
+        let [a, b, c] = [a, b, c].map(|point| point.map(f64::from));
+        a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+    };
+    triangles.iter().map(one).sum::<f64>() / 6.0
+}
+
+/// Checks that every edge belongs to two triangles, once in each direction: the triangles are closed, and have one orientation.
+fn assert_closed(triangles: &[[[f32; 3]; 3]], what: &str) {
+    let mut edges = std::collections::BTreeMap::new();
+    let key = |point: [f32; 3]| point.map(|axis| (axis + 0.0).to_bits());
+    for [a, b, c] in triangles {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            *edges.entry((key(*from), key(*to))).or_insert(0) += 1;
+        }
+    }
+    let is_matched = |((from, to), count): (&([u32; 3], [u32; 3]), &i32)| edges.get(&(*to, *from)) == Some(count);
+    assert!(edges.iter().all(is_matched), "{what}");
+}
+
+#[test]
+fn tets_are_the_faces_of_a_body_with_a_scalar() {
+    let attribute = |name: &str, components: usize, is_integer: bool| fragbuf_scene::AttributeRequest {
+        name: name.to_owned(),
+        components,
+        is_integer,
+        is_optional: false,
+    };
+    let requests =
+        [attribute("boundary", 1, true), attribute("Scalar", 1, false), attribute("scalar_gradient", 3, false)];
+    for (name, body) in [("tets,n=8", 1.37), ("tets,n=8,hole=0", 4.19)] {
+        let made =
+            fragbuf_scene::open_with(&format!("builtin:{name}"), [1.0; 4], &requests, &Limits::default()).unwrap();
+        let [object] = made.objects.as_slice() else { panic!("{name}") };
+        let [boundary, scalar, gradient] = object.attributes.as_slice() else { panic!("{name}") };
+        assert_eq!((boundary.len(), gradient.len()), (object.positions.len(), 3 * object.positions.len()));
+        let scalars: Vec<f32> = scalar.iter().map(|word| f32::from_bits(*word)).collect();
+        assert!(scalars.iter().all(|value| (0.0..=1.0).contains(value)) && scalars.contains(&1.0), "{name}");
+        assert!(gradient.iter().any(|word| f32::from_bits(*word).abs() > 0.5), "{name}");
+        // All corners of a triangle are of the surface, or none is.
+        let (surface, inside): (Vec<[u32; 3]>, Vec<[u32; 3]>) =
+            object.triangles.iter().partition(|corners| boundary[corners[0] as usize] == 1);
+        let is = |corners: &[u32; 3], value: u32| corners.iter().all(|index| boundary[*index as usize] == value);
+        assert!(surface.iter().all(|corners| is(corners, 1)) && inside.iter().all(|corners| is(corners, 0)), "{name}");
+        assert!(inside.len() > surface.len(), "{name}");
+        let surface = triangles(&fragbuf_scene::Object { triangles: surface, ..object.clone() });
+        assert_closed(&surface, name);
+        assert!((0.85..1.0).contains(&(volume(&surface) / body)), "{name}: {}", volume(&surface));
+    }
+    let missing =
+        fragbuf_scene::open_with("builtin:tets", [1.0; 4], &[attribute("heat", 1, false)], &Limits::default());
+    assert!(matches!(missing, Err(Error::MissingAttribute { available, .. }) if available.len() == 3));
+    let limits = Limits { memory: 1 << 20, ..Limits::default() };
+    let large = open("builtin:tets,n=48", [1.0; 4], &limits);
+    assert!(matches!(large, Err(Error::TooLarge { .. })), "{large:?}");
+}
+
+/// The front side of each triangle is where its normals point, and bodies are closed.
+#[test]
+fn bodies_are_closed_with_their_front_outside() {
+    for name in ["cubes", "marbles,n=4", "particles,n=20", "part", "part,sides=8", "building,storeys=2,rooms=3"] {
+        for object in scene(name).objects {
+            let of = triangles(&object);
+            if !name.starts_with("building") && !name.starts_with("marbles") {
+                assert_closed(&of, &format!("{name}: {}", object.name));
+                assert!(volume(&of) > 0.0, "{name}: {}", object.name);
+            }
+            for (corners, [a, b, c]) in object.triangles.iter().zip(&of) {
+                let [a, b, c] = [a, b, c].map(|point| glam::Vec3::from_array(*point));
+                let front = (b - a).cross(c - a).normalize_or_zero();
+                let is_front = |index: u32| front.dot(object.normals[index as usize].into()) > 0.5;
+                assert!(corners.iter().all(|index| is_front(*index)), "{name}: {}", object.name);
+            }
+        }
+    }
+    // The volumes of the block and of the slot.
+    let part = scene("part");
+    let volumes: Vec<f64> = part.objects.iter().map(|object| volume(&triangles(object))).collect();
+    assert!((volumes[0] - 2.25).abs() < 1.0e-6 && (volumes[4] - 0.052).abs() < 1.0e-6, "{volumes:?}");
+}
+
+#[test]
+fn particles_have_a_scalar_a_centre_and_a_radius() {
+    let attribute = |name: &str, components: usize| fragbuf_scene::AttributeRequest {
+        name: name.to_owned(),
+        components,
+        is_integer: false,
+        is_optional: false,
+    };
+    let requests = [attribute("scalar", 1), attribute("radius", 1), attribute("centre", 3)];
+    let made = fragbuf_scene::open_with("builtin:particles,n=50", [1.0; 4], &requests, &Limits::default()).unwrap();
+    assert_eq!(made.objects.len(), 50);
+    for object in &made.objects {
+        for (index, position) in object.positions.iter().enumerate() {
+            let number = |attribute: usize, at: usize| f32::from_bits(object.attributes[attribute][at]);
+            let offset: f32 = (0..3).map(|axis| (position[axis] - number(2, 3 * index + axis)).powi(2)).sum();
+            assert!((offset.sqrt() - number(1, index)).abs() < 1.0e-5);
+            assert!((0.0..=1.0).contains(&number(0, index)));
+        }
+    }
+}
+
+/// Rooms share the planes of their walls: opposite triangles of neighbours have equal corners.
+#[test]
+fn walls_of_a_building_lie_in_shared_planes() {
+    let made = scene("building,storeys=3,rooms=4");
+    assert_eq!(made.objects.len(), 48);
+    let mut found = std::collections::BTreeMap::new();
+    for mut corners in made.objects.iter().flat_map(triangles) {
+        corners.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        *found.entry(corners.map(|point| point.map(|axis| (axis + 0.0).to_bits()))).or_insert(0) += 1;
+    }
+    // Walls inside: 3 per row of 4 rooms in both directions, and 2 floors between 3 storeys.
+    let inside = 2 * (3 * 4 * 3 * 2 + 2 * 16);
+    assert_eq!(found.values().filter(|count| **count == 2).count(), inside);
 }

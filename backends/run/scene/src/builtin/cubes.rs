@@ -2,11 +2,17 @@
 
 use glam::{Quat, Vec3};
 
-use super::row::{Objects, Row};
+use super::row::{Objects, Row, no_memory};
 use crate::Object;
 
-pub(super) const ROW: Row =
-    Row { name: "cubes", summary: "three translucent cubes, each intersecting the next", parameters: &[], generate };
+pub(super) const ROW: Row = Row {
+    name: "cubes",
+    summary: "three translucent cubes, each intersecting the next",
+    parameters: &[],
+    attributes: &[],
+    working: no_memory,
+    generate,
+};
 
 fn generate(_: &[u32]) -> Objects {
     let cubes = [

@@ -5,13 +5,15 @@ use std::f32::consts::TAU;
 use glam::Vec3;
 
 use super::random::Rng;
-use super::row::{Objects, Parameter, Row, SEED, hue, value};
+use super::row::{Objects, Parameter, Row, SEED, hue, no_memory, value};
 use crate::Object;
 
 pub(super) const ROW: Row = Row {
     name: "hairball",
     summary: "thin tubes through a ball; over 2 M triangles and some 150 layers",
     parameters: &[Parameter { name: "strands", default: 3600, range: (1, 100_000) }, SEED],
+    attributes: &[],
+    working: no_memory,
     generate,
 };
 

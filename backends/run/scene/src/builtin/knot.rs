@@ -4,7 +4,7 @@ use std::f32::consts::TAU;
 
 use glam::Vec3;
 
-use super::row::{Objects, Parameter, Row, hue, value};
+use super::row::{Objects, Parameter, Row, hue, no_memory, value};
 use crate::Object;
 
 pub(super) const ROW: Row = Row {
@@ -16,6 +16,8 @@ pub(super) const ROW: Row = Row {
         Parameter { name: "rings", default: 256, range: (3, 65536) },
         Parameter { name: "sides", default: 32, range: (3, 1024) },
     ],
+    attributes: &[],
+    working: no_memory,
     generate,
 };
 

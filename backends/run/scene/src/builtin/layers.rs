@@ -8,7 +8,7 @@
 //! With `coplanar` above 1 every plane has so many quads, whose fragments have equal depths (Vasilakis & Fudos 2013, section 4.1.2).
 
 use super::random::Rng;
-use super::row::{Objects, Parameter, Row, SEED, hue, value};
+use super::row::{Objects, Parameter, Row, SEED, hue, no_memory, value};
 use crate::Object;
 
 pub(super) const ROW: Row = Row {
@@ -21,6 +21,8 @@ pub(super) const ROW: Row = Row {
         Parameter { name: "fragments", default: 100, range: (1, 100) },
         Parameter { name: "coplanar", default: 1, range: (1, 256) },
     ],
+    attributes: &[],
+    working: no_memory,
     generate,
 };
 

@@ -5,13 +5,15 @@ use std::f32::consts::{PI, TAU};
 use glam::Vec3;
 
 use super::random::Rng;
-use super::row::{Objects, Parameter, Row, SEED, hue, value};
+use super::row::{Objects, Parameter, Row, SEED, hue, no_memory, value};
 use crate::Object;
 
 pub(super) const ROW: Row = Row {
     name: "marbles",
     summary: "translucent balls of many colours",
     parameters: &[Parameter { name: "n", default: 48, range: (1, 4096) }, SEED],
+    attributes: &[],
+    working: no_memory,
     generate,
 };
 

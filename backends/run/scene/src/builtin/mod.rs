@@ -1,21 +1,28 @@
 //! Generated scenes: `NAME[,parameter=value]…`. Equal names and parameters give equal scenes.
 
+mod attributes;
+mod building;
 mod cubes;
 mod hairball;
 mod knot;
 mod layers;
 mod marbles;
 mod needles;
+mod part;
+mod particles;
 mod random;
 mod row;
+mod shapes;
 mod slabs;
 mod slivers;
+mod tets;
 
 use std::str::FromStr;
 
+use crate::error::FileError;
 use crate::limits::Budget;
-use crate::{Error, Limits, Scene};
-pub use row::{Parameter, Row};
+use crate::{AttributeRequest, Error, Limits, Scene};
+pub use row::{Attribute, Parameter, Row};
 
 /// A generated scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,18 +33,41 @@ pub struct BuiltinScene {
 }
 
 /// The registry rows of all generated scenes.
-pub const BUILTIN_SCENES: [Row; 8] =
-    [cubes::ROW, slabs::ROW, layers::ROW, marbles::ROW, hairball::ROW, needles::ROW, slivers::ROW, knot::ROW];
+pub const BUILTIN_SCENES: [Row; 12] = [
+    cubes::ROW,
+    slabs::ROW,
+    layers::ROW,
+    marbles::ROW,
+    hairball::ROW,
+    needles::ROW,
+    slivers::ROW,
+    tets::ROW,
+    particles::ROW,
+    part::ROW,
+    building::ROW,
+    knot::ROW,
+];
 
 impl BuiltinScene {
-    /// Generates the scene. `Err`: it is larger than the limits.
+    /// Generates the scene without attributes. `Err`: it is larger than the limits.
     pub fn generate(&self, limits: &Limits) -> Result<Scene, Error> {
+        self.generate_with(&[], limits)
+    }
+
+    /// Generates the scene with these attributes. `Err`: it is larger than the limits, or has no such attribute.
+    pub fn generate_with(&self, attributes: &[AttributeRequest], limits: &Limits) -> Result<Scene, Error> {
         let budget = Budget::new(limits);
-        let mut scene = Scene::default();
-        for object in (self.row.generate)(&self.values) {
-            budget.object(&object).map_err(|error| error.in_file(&format!("builtin:{}", self.row.name)))?;
+        let in_scene = |error: FileError| error.in_file(&format!("builtin:{}", self.row.name));
+        let found = attributes::find(self.row.attributes, attributes).map_err(in_scene)?;
+        let working = budget.hold(1, (self.row.working)(&self.values), "generating the scene").map_err(in_scene)?;
+        let attributes = found.iter().map(|(request, _)| request.clone()).collect();
+        let mut scene = Scene { attributes, ..Scene::default() };
+        for mut object in (self.row.generate)(&self.values) {
+            attributes::select(&mut object, self.row.attributes, &found);
+            budget.object(&object).map_err(in_scene)?;
             scene.objects.push(object);
         }
+        drop(working);
         Ok(scene)
     }
 }
@@ -46,7 +76,7 @@ impl FromStr for BuiltinScene {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self, Error> {
-        static ROWS: [Row; 8] = BUILTIN_SCENES;
+        static ROWS: [Row; 12] = BUILTIN_SCENES;
         let mut parts = text.split(',');
         let name = parts.next().unwrap_or("");
         let Some(row) = ROWS.iter().find(|row| row.name == name) else {

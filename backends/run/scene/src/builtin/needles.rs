@@ -6,13 +6,15 @@ use std::f32::consts::TAU;
 use glam::Vec3;
 
 use super::random::Rng;
-use super::row::{Objects, Parameter, Row, SEED, hue, value};
+use super::row::{Objects, Parameter, Row, SEED, hue, no_memory, value};
 use crate::Object;
 
 pub(super) const ROW: Row = Row {
     name: "needles",
     summary: "long thin spikes, nearly parallel, through the depth of the scene; some 100 layers",
     parameters: &[Parameter { name: "n", default: 40_000, range: (1, 200_000) }, SEED],
+    attributes: &[],
+    working: no_memory,
     generate,
 };
 

@@ -13,6 +13,17 @@ pub struct Parameter {
     pub range: (u32, u32),
 }
 
+/// An attribute of the vertices of a generated scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Attribute {
+    /// The name.
+    pub name: &'static str,
+    /// The number of components.
+    pub components: usize,
+    /// Whether its words are unsigned integers. If not, they are the bits of `f32` numbers.
+    pub is_integer: bool,
+}
+
 /// The objects of a generated scene, one after the other.
 pub(super) type Objects = Box<dyn Iterator<Item = Object>>;
 
@@ -25,7 +36,11 @@ pub struct Row {
     pub summary: &'static str,
     /// The parameters.
     pub parameters: &'static [Parameter],
-    /// Generates the objects from the values of the parameters.
+    /// The attributes of the vertices, beside position, normal and colour.
+    pub attributes: &'static [Attribute],
+    /// Returns the bytes that generating an object needs beside it.
+    pub(super) working: fn(&[u32]) -> u64,
+    /// Generates the objects, with all attributes of the row, from the values of the parameters.
     pub(super) generate: fn(&[u32]) -> Objects,
 }
 
@@ -36,6 +51,11 @@ impl PartialEq for Row {
 }
 
 pub(super) const SEED: Parameter = Parameter { name: "seed", default: 1, range: (0, u32::MAX) };
+
+/// Returns that generating an object needs no memory beside it.
+pub(super) fn no_memory(_: &[u32]) -> u64 {
+    0
+}
 
 /// Returns the value of a parameter by its index in the row.
 pub(super) fn value(values: &[u32], index: usize) -> u32 {

@@ -2,13 +2,15 @@
 //! them.
 
 use super::random::Rng;
-use super::row::{Objects, Parameter, Row, SEED, hue, value};
+use super::row::{Objects, Parameter, Row, SEED, hue, no_memory, value};
 use crate::Object;
 
 pub(super) const ROW: Row = Row {
     name: "slabs",
     summary: "translucent quads of random depth",
     parameters: &[Parameter { name: "n", default: 16, range: (1, 65_536) }, SEED],
+    attributes: &[],
+    working: no_memory,
     generate,
 };
 

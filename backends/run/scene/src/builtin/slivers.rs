@@ -4,7 +4,7 @@
 //! Bavoil et al. 2006 (B06, section 5).
 
 use super::random::Rng;
-use super::row::{Objects, Parameter, Row, SEED, hue, value};
+use super::row::{Objects, Parameter, Row, SEED, hue, no_memory, value};
 use crate::Object;
 
 pub(super) const ROW: Row = Row {
@@ -16,6 +16,8 @@ pub(super) const ROW: Row = Row {
         Parameter { name: "rows", default: 24, range: (1, 1024) },
         Parameter { name: "long", default: 10, range: (0, 100) },
     ],
+    attributes: &[],
+    working: no_memory,
     generate,
 };
 
