@@ -54,10 +54,11 @@ pub(crate) const EFFECTS: &[Effect] = &[
         "B06 §4.1, D13 §4",
         reads: None,
         &[
-            ("--scene", "builtin:cubes"),
+            ("--scene", "builtin:part,sides=128"),
             ("--size", "960x540"),
-            ("--camera", "eye:1.3,1.9,1.8,target:-0.5,0,0.1,fov:36"),
+            ("--camera", "orbit:30,32,zoom:1.15"),
             ("--shading", "unlit"),
+            ("--uniform", "equal=0.00002"),
             ("--set", "samples=coverage"),
         ]
     ),
@@ -124,9 +125,9 @@ pub(crate) const EFFECTS: &[Effect] = &[
         "D13 Fig. 13",
         reads: None,
         &[
-            ("--scene", "builtin:layers,n=9,coplanar=3,fragments=30"),
+            ("--scene", "builtin:building"),
             ("--size", "960x540"),
-            ("--camera", "clip"),
+            ("--camera", "orbit:30,20,zoom:1.2"),
         ]
     ),
     row!(
@@ -183,6 +184,32 @@ pub(crate) const EFFECTS: &[Effect] = &[
             ("--uniform", "camera=camera"),
             ("--uniform", "near=2.3"),
             ("--uniform", "far=3"),
+        ]
+    ),
+    row!(
+        "volume",
+        "direct volume rendering of a tetrahedral mesh, integrated in closed form between its faces",
+        "B06 §4.3",
+        reads: None,
+        &[
+            ("--scene", "builtin:tets,n=16"),
+            ("--size", "960x540"),
+            ("--camera", "orbit:15,50,zoom:1.3"),
+            ("--background", "0.01,0.01,0.02,1"),
+            ("--uniform", "density=40"),
+        ]
+    ),
+    row!(
+        "isosurface",
+        "where the scalar of a tetrahedral mesh has a value",
+        "B06 §4.3",
+        reads: None,
+        &[
+            ("--scene", "builtin:tets,n=20"),
+            ("--size", "960x540"),
+            ("--camera", "orbit:15,50,zoom:1.2"),
+            ("--uniform", "value=0.15"),
+            ("--uniform", "alpha=0.6"),
         ]
     ),
 ];

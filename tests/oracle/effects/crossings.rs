@@ -4,11 +4,11 @@ use super::layers::{ALPHA, color, lit, painted, surface};
 use super::ray::{Hit, Ray};
 use super::solids::{dot, scale};
 
-/// The first solid without those of the ids up to 31.
+/// The first two solids without those of the ids up to 31.
 pub fn csg(ray: &Ray<'_>) -> [f64; 4] {
     first_surface(ray, |span| {
         let is_inside = |id: u32| ray.containing(span, |other| other == id) > 0;
-        is_inside(0) && (1..32).all(|id| !is_inside(id))
+        (is_inside(0) || is_inside(1)) && (2..32).all(|id| !is_inside(id))
     })
 }
 

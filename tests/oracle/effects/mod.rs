@@ -11,6 +11,7 @@ mod images;
 mod layers;
 mod ray;
 mod solids;
+mod volumes;
 
 use fragbuf_model::{SourceSpan, Variant, check};
 use fragbuf_templates::Registry;
@@ -121,7 +122,7 @@ pub const EFFECTS: &[Effect] = &[
         layers::translucency
     ),
     effect!("wireframe", &[("width", Number::F32(layers::WIDTH)), ("alpha", Number::F32(layers::ALPHA))], open over PEELED, ("2.0 * f.edges", "1.5 * f.edges"), layers::wireframe),
-    effect!("csg", &[], closed over ALL, ("> f.depth", ">= f.depth"), crossings::csg),
+    effect!("csg", &[("equal", Number::F32(1e-6))], closed over ALL, ("f.depth + u.equal", "f.depth - u.equal"), crossings::csg),
     effect!(
         "self_collision",
         &[("alpha", Number::F32(layers::ALPHA))],
@@ -139,6 +140,20 @@ pub const EFFECTS: &[Effect] = &[
         colors::coplanarity
     ),
     effect!("complexity", &[("most", Number::F32(colors::MOST))], open over ALL, ("0.95", "0.9"), colors::complexity),
+    effect!(
+        "volume",
+        &[("density", Number::F32(volumes::DENSITY))],
+        mesh over ALL,
+        ("/ 3.0", "/ 2.9"),
+        volumes::volume
+    ),
+    effect!(
+        "isosurface",
+        &[("value", Number::F32(volumes::VALUE)), ("alpha", Number::F32(layers::ALPHA))],
+        mesh over ALL,
+        ("lerp(back.scalar_gradient, at)", "lerp(back.scalar_gradient, 0.5)"),
+        volumes::isosurface
+    ),
     effect!(
         "silhouettes",
         &[("camera", Number::Vec3(layers::CAMERA)), ("jump", Number::F32(images::JUMP))],

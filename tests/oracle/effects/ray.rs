@@ -1,6 +1,6 @@
 //! A ray through the centre of a pixel: what it hits, and the parts between.
 
-use super::solids::{SIZE, Solids, Triangle};
+use super::solids::{SIZE, Solids, Triangle, cross, dot, sub};
 
 /// The least distance of the centre of a pixel from an edge, in pixels: rasterisers round positions.
 const EDGE: f64 = 1.0 / 512.0;
@@ -24,6 +24,21 @@ pub struct Ray<'a> {
 pub struct Hit<'a> {
     pub depth: f64,
     pub triangle: &'a Triangle,
+}
+
+impl Hit<'_> {
+    /// Returns the value of a point from those of the corners of the triangle, between which it is linear.
+    pub fn interpolated<const N: usize>(&self, point: [f64; 3], of: impl Fn([f64; 3]) -> [f64; N]) -> [f64; N] {
+        let [a, b, c] = self.triangle.corners;
+        let area = |p: [f64; 3], q: [f64; 3]| {
+            let side = cross(sub(p, point), sub(q, point));
+            dot(side, side).sqrt()
+        };
+        let parts = [area(b, c), area(c, a), area(a, b)];
+        let values = [a, b, c].map(of);
+        let whole: f64 = parts.iter().sum();
+        std::array::from_fn(|i| (0..3).map(|corner| parts[corner] * values[corner][i]).sum::<f64>() / whole)
+    }
 }
 
 /// A part of a ray between two depths at which it hits something.
@@ -65,6 +80,12 @@ impl<'a> Ray<'a> {
     /// Returns how many solids of these ids contain the middle of a part.
     pub fn containing(&self, span: &Span, is_meant: impl Fn(u32) -> bool) -> u32 {
         self.solids.containing([self.point[0], self.point[1], 0.5 * (span.from + span.to)], is_meant)
+    }
+
+    /// Whether a solid contains the point of a depth: whether its surface has another number of crossings before it.
+    pub fn is_inside(&self, depth: f64) -> bool {
+        let surface = self.hits.iter().filter(|hit| hit.triangle.is_boundary && hit.depth < depth);
+        surface.count() % 2 == 1
     }
 
     /// Returns the hits at a depth.

@@ -12,6 +12,8 @@ pub struct Triangle {
     /// Unit vector out of the solid.
     pub normal: [f64; 3],
     pub id: u32,
+    /// Whether it is on the surface of its solid, and not between two tetrahedra of it.
+    pub is_boundary: bool,
     /// Straight red, green, blue and alpha. Of equal depths, the lesser colour word is nearer, which is that of the lesser id.
     pub color: [u8; 4],
 }
@@ -62,6 +64,27 @@ impl Solids {
         solids
     }
 
+    /// Returns two octahedra, each divided into eight tetrahedra around a point in it. A face between two of them occurs once.
+    pub fn mesh() -> Self {
+        let mut solids = Solids { triangles: Vec::new() };
+        let axes = [[10.25, 2.0, 0.06], [-3.25, 10.75, 0.04], [2.25, -3.0, 0.17]];
+        solids.tetrahedra([14.0, 15.0, 0.28], axes, 0);
+        solids.tetrahedra([18.0, 16.0, 0.72], [[9.75, -4.0, 0.05], [5.25, 9.25, 0.03], [-2.75, 1.5, 0.18]], 1);
+        solids
+    }
+
+    fn tetrahedra(&mut self, centre: [f64; 3], axes: [[f64; 3]; 3], id: u32) {
+        self.octahedron(centre, axes, id, [255; 4]);
+        let tip = |bits: usize| {
+            std::array::from_fn(|i| centre[i] + if bits % 2 == 0 { 1.0 } else { -1.0 } * axes[bits / 2][i])
+        };
+        let within = [centre[0] + 1.75, centre[1] - 1.25, centre[2] + 0.03];
+        for (a, b) in (0..6).flat_map(|a| (a + 1..6).map(move |b| (a, b))).filter(|(a, b)| a / 2 != b / 2) {
+            self.outward([tip(a), tip(b), within], &[[16.0, 16.0, 2.0]], id, [255; 4]);
+            self.triangles.last_mut().unwrap().is_boundary = false;
+        }
+    }
+
     /// Adds a box between two corners, in pixels and depths.
     fn aligned(&mut self, least: [f64; 3], most: [f64; 3], id: u32, color: [u8; 4]) {
         let corner =
@@ -98,7 +121,7 @@ impl Solids {
             corners.swap(1, 2);
         }
         let normal = if is_outward { normal } else { scale(normal, -1.0) };
-        self.triangles.push(Triangle { corners, normal, id, color });
+        self.triangles.push(Triangle { corners, normal, id, is_boundary: true, color });
     }
 
     /// Returns the vertices for the inputs of these names, in their order. The first is the position in clip space.
@@ -115,6 +138,9 @@ impl Solids {
                         "edges" => push(&triangle.edge_distances(corner)),
                         "normal" => push(&triangle.normal),
                         "id" => bytes.extend(triangle.id.to_le_bytes()),
+                        "scalar" => push(&[scalar(corner)]),
+                        "scalar_gradient" => push(&gradient(corner)),
+                        "boundary" => bytes.extend(u32::from(triangle.is_boundary).to_le_bytes()),
                         "front" => bytes.extend(u32::from(triangle.normal[2] < 0.0).to_le_bytes()),
                         other => panic!("no value for the attribute `{other}`"),
                     }
@@ -143,6 +169,16 @@ impl Solids {
         assert!((number - number.round()).abs() < 1e-6 && number > -0.5, "winding number {number} at {point:?}");
         number.round() as u32
     }
+}
+
+/// Returns the scalar of a vertex of a mesh, from 0 to 1. Between vertices it is linear.
+pub fn scalar([x, y, depth]: [f64; 3]) -> f64 {
+    0.5 + 0.45 * (5.0 * x + 1.0).sin() * (4.0 * y - 9.0 * depth).cos()
+}
+
+/// Returns the gradient of a vertex of a mesh. Tests need no true one.
+pub fn gradient([x, y, depth]: [f64; 3]) -> [f64; 3] {
+    [0.3 + x, 0.8 - y, 0.2 - 3.0 * depth]
 }
 
 /// Returns the position in clip space of one in pixels.
