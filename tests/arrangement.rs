@@ -86,6 +86,24 @@ fn the_disorder_is_that_of_the_scene() {
     assert!(stream(1) || sorted == 0);
 }
 
+/// Direct volume rendering of a tetrahedral mesh (B06 §4.3): sorted by centroids, a few fragments complete the order of all.
+#[test]
+fn sorted_tetrahedra_need_a_small_k() {
+    let path = folder("disorder-tets").join("image.png").to_str().unwrap().to_owned();
+    let scene = ["--scene", "builtin:tets,n=4", "--size", "64x48", "--device", "cpu", "--out", &path, "--json"];
+    let compared = |options: &[&str]| -> serde_json::Value {
+        let output = fragbuf(&[&["compare", "kb_stream", "ab_ll"], &scene[..], options].concat());
+        assert!(output.status.success(), "{options:?}: {}", stderr(&output));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let sorted = compared(&["--set-first", "k=16", "--presort"]);
+    let disorder = |name: &str| sorted["first"]["disorder"][name].as_u64().unwrap();
+    assert!(disorder("before") > 16 && disorder("after") < 16, "{}", sorted["first"]["disorder"]);
+    assert_eq!(sorted["different_pixels"], 0);
+    let modelled = compared(&["--set-first", "k=16"]);
+    assert!(modelled["different_pixels"].as_u64() > Some(100), "{modelled}");
+}
+
 /// Every command with a scene prints the disorder, as a note or in JSON.
 #[test]
 fn every_command_prints_the_disorder() {

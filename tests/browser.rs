@@ -12,12 +12,18 @@ mod effect_jobs;
 #[path = "oracle/effects/mod.rs"]
 pub mod effects;
 mod jobs;
+#[path = "oracle/lookups.rs"]
+mod lookups;
 #[path = "oracle/numbers.rs"]
 mod numbers;
 #[path = "../backends/run/cpu/tests/peeling_loop.rs"]
 mod peeling_loop;
 #[path = "oracle/scene.rs"]
 mod scene;
+/// What `lookups` uses of the hosts' module of this name.
+mod technique {
+    pub const BACKGROUND: [f64; 3] = [0.2, 0.4, 0.6];
+}
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

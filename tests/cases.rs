@@ -68,6 +68,41 @@ buffer Continued from f2b_ll {
     }
 }";
 
+/// A description with textures in every closure, and images that read earlier images.
+pub const TEXTURED: &str = "
+buffer Textured from kplus_array {
+    fragment { color: rgba8, depth: f32 }
+    texture { bias: 2d, volume: 3d }
+    keep 6 least |f, u| f.depth + 0.1 * u.bias.sample(vec2(f.depth, 0.5)).x;
+    where |f, u| u.volume.load((f.depth * 8.0) as i32, 0, 1).w > 0.25;
+    image first |fragments, u| u.volume.sample(vec3(fragments[0].depth, 0.5, 0.25));
+    image blurred |fragments, u| {
+        let mut sum = Vec4::ZERO;
+        for y in -1..=1 {
+            for x in -1..=1 { sum += u.first.at(x, y); }
+        }
+        sum * (1.0 / 9.0)
+    }
+    resolve |fragments, u| {
+        let edge = u.blurred.at(1, 0) - u.blurred.at(-1, 0);
+        let near = u.volume.sample_nearest(fragments[0].color.truncate());
+        (edge.truncate() + near.truncate() * (u.bias.width() as f32)).extend(1.0)
+    }
+}";
+
+/// The effect of neighbours along the ray.
+pub const PAIRS: &str = "
+buffer Pairs from kb_stream {
+    fragment { color: rgba8, depth: f32, heat: f32 }
+    uniform { density: f32 }
+    texture { table: 2d }
+    keep 6;
+    between |front, back, gap, u| {
+        let opacity = 1.0 - (-u.density * gap).exp();
+        opacity * u.table.sample(vec2(front.heat, back.heat))
+    }
+}";
+
 /// A description with attributes whose names are keywords or generated names in some language.
 pub const RESERVED: &str = "
 buffer Reserved from ab_ll {
@@ -163,6 +198,13 @@ fn written() -> Vec<Case> {
         ("f2b_2p", technique("f2b_2p"), vec![]),
         ("f2b_1p", technique("f2b_1p"), vec![]),
         ("continued", text(CONTINUED), vec![]),
+        ("textured", text(TEXTURED), vec![]),
+        ("pairs", text(PAIRS), vec![]),
+        (
+            "pairs_sorted",
+            text(PAIRS),
+            vec![("storage", "linked_list"), ("sync", "slot_counter"), ("k", "all"), ("sort", "insertion")],
+        ),
         ("f2b_3p", technique("f2b_3p"), vec![]),
         ("dual", technique("dual"), vec![]),
         ("dual_2p", technique("dual_2p"), vec![]),

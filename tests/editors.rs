@@ -96,10 +96,12 @@ fn keywords_of_the_compiler_are_keywords_of_the_grammar() {
     let items = ["fragment { depth: f32 }", "uniform { cut: f32 }", "keep 8 least |f| f.depth;", "keep all;"];
     let more =
         ["where |f| true;", "resolve |f| { f }", "fn half(x: f32) -> f32 { x }", "sync: interlock else spin_lock;"];
+    let lookups = ["texture { lut: 2d }", "image near |f| f[0].color;", "between |front, back, gap| front.color;"];
     let statements = "resolve |fragments, u| { let mut x = 0; for f in fragments { if true { break; } else { continue; } } return x; }";
     let texts: Vec<String> = items
         .iter()
         .chain(&more)
+        .chain(&lookups)
         .chain(&[statements, "storage: wgsl(\"a.wgsl\");", "where |f| false;"])
         .map(|item| format!("buffer B from kb {{\n    {item}\n}}"))
         .collect();

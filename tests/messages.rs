@@ -80,7 +80,7 @@ fn names_of_other_shading_languages_have_their_rust_names() {
         ("where |f| float(2) < f.depth;", "(2 as f32)"),
         ("where |f| float3(1.0, 2.0, 3.0).x < f.depth;", "`vec3(1.0, 2.0, 3.0)`"),
         ("where |f| clamp(f.depth, 0.0, 1.0) < 0.5;", "`f.depth.clamp(0.0, 1.0)`"),
-        ("where |f| texture(f.depth) < 0.5;", "store the value in an attribute"),
+        ("where |f| texture(f.depth) < 0.5;", "declare `texture { lut: 2d }`"),
         ("where |f| f.color.rgb.x < 0.5;", ".xyz()"),
         ("where |f| f.color.a < 0.5;", "`.w`"),
         ("where |f| gl_FragCoord.x < f.depth;", "position of the pixel"),

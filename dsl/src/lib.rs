@@ -51,8 +51,9 @@ pub use fragbuf_macros as macros;
 /// It emits a module named after the buffer (`MostVisible`: `most_visible`) with
 ///
 /// * `Fragment`, the attributes in [`glam`]'s types, and `Uniforms`, laid out as on the GPU, with `SIZE` and `bytes()`;
-/// * `criterion`, `constraint_0` …, `resolve`: the closures of the description as functions; its helper functions are in
-///   `functions`;
+/// * `criterion`, `constraint_0` …, `resolve`, `between`, `image_name`: the closures of the description as functions; its helper functions
+///   are in `functions`;
+/// * `Textures`, if closures read textures or images: a further argument of these functions;
 /// * `draft()` and `variant()`: the description as data, with source spans.
 ///
 /// `fragbuf::fragment_buffer!` emits the binding numbers of the passes in addition, in a module `bindings`.

@@ -2,6 +2,33 @@
 //! the closures.
 //!
 //! The methods return what shaders compute: filters are those of the generated code, not of a device.
+//!
+//! ```
+//! use fragbuf_dsl::glam::{Vec4, vec2};
+//! use fragbuf_dsl::{Image, Texture2d};
+//!
+//! fragbuf_dsl::fragment_buffer! {
+//!     buffer Toned from kplus_array {
+//!         texture { lut: 2d }
+//!         uniform { scale: f32 }
+//!         fn tone(x: f32, u: Uniforms) -> Vec4 { u.scale * u.lut.sample(vec2(x, 0.5)) }
+//!         image near |fragments, u| tone(fragments[0].depth, u);
+//!         resolve |fragments, u| u.near.at(1, 0) - u.near.at(-1, 0);
+//!     }
+//! }
+//!
+//! let texels = [Vec4::ZERO, Vec4::ONE];
+//! let uniforms = toned::Uniforms { scale: 2.0, ..Default::default() };
+//! let textures = toned::Textures { lut: Texture2d::new([2, 1], &texels), ..Default::default() };
+//! let fragment = toned::Fragment { depth: 0.5, ..Default::default() };
+//! // Half-way between the texels.
+//! assert_eq!(toned::image_near(&[fragment], &uniforms, &textures), Vec4::ONE);
+//!
+//! let values = [Vec4::ZERO, Vec4::splat(0.25), Vec4::ONE];
+//! let textures = toned::Textures { near: Image::new([3, 1], &values, [1, 0]), ..textures };
+//! assert_eq!(toned::resolve(&[fragment], &uniforms, &textures), Vec4::ONE);
+//! assert_eq!(textures.lut.sample(vec2(-1.0, 0.5)), Vec4::ZERO);
+//! ```
 
 use glam::{Vec2, Vec3, Vec4};
 

@@ -7,10 +7,10 @@ use crate::vocabulary::{Capability, Edit, Parameter, Row};
 pub(crate) const CLOSURE: &str = "closure";
 
 /// The value that stands for a closure over two neighbouring fragments.
-pub(crate) const BETWEEN: &str = "between";
+pub(crate) const BETWEEN: &str = "pairs";
 
 /// The value that stands for a closure that reads images.
-pub(crate) const STEPS: &str = "steps";
+pub(crate) const STEPS: &str = "after_images";
 
 /// The constant with the number of the layer that an effect shows alone. A row on the axis `resolve` with a parameter of this constant is such an
 /// effect.
@@ -84,7 +84,7 @@ pub(crate) fn rows() -> Vec<Row> {
             ..Row::new("resolve", CLOSURE, "the closure of the description, `resolve |fragments, u| { … }`", "")
         },
         Row {
-            template: Some(template!("resolve/between")),
+            template: Some(template!("resolve/pairs")),
             calls: vec!["samples"],
             requires: vec![Capability::Sorted],
             provides: vec![Capability::PairValues],

@@ -30,7 +30,10 @@ async function drawJob(adapter, device, job, load) {
     const asked = requirements(manifest, adapter, { size, format: FORMAT, symbols: job.symbols });
     if (Object.keys(asked.requiredLimits).length + asked.requiredFeatures.length > 0) throw new Error(`asks for ${JSON.stringify(asked)}`);
     const textures = {};
-    for (const { name, format, file } of job.textures) textures[name] = await texture(device, format, size, await load(file, "bytes"));
+    for (const { name, format, file, dimension, size: texels } of job.textures) {
+        const bytes = await load(file, "bytes");
+        textures[name] = dimension ? described(device, dimension, texels, bytes) : await texture(device, format, size, bytes);
+    }
     const target = device.createTexture({ size, format: FORMAT, usage: GPUTextureUsage.RENDER_ATTACHMENT | GPUTextureUsage.COPY_SRC });
     const scenes = [];
     for (const scene of job.scenes) {
@@ -77,6 +80,14 @@ async function drawJob(adapter, device, job, load) {
     }
     [target, ...scenes.map(({ mesh }) => mesh), ...Object.values(textures)].forEach((object) => object.destroy());
     return runs;
+}
+
+/** Creates a texture of a description: four floats per texel. */
+function described(device, dimension, size, bytes) {
+    const usage = GPUTextureUsage.COPY_DST | GPUTextureUsage.TEXTURE_BINDING;
+    const created = device.createTexture({ size, dimension, format: "rgba32float", usage });
+    device.queue.writeTexture({ texture: created }, bytes, { bytesPerRow: 16 * size[0], rowsPerImage: size[1] }, size);
+    return created;
 }
 
 /** Creates a texture with one number per pixel. WebGPU copies nothing into a depth texture, so a pass draws it. */

@@ -11,13 +11,16 @@ use fragbuf::vocabulary::{
     Access, Blend, Capability, Element, KeepDefault, Objects, Pass, Resource, Row, Step, Technique, Template,
     TextureFormat,
 };
-use fragbuf::{Draft, Form, Generation, Plan, Registry, Request, SourceSpan, Variant, generate, manifest, target};
+use fragbuf::{
+    Draft, Form, Generation, Plan, Registry, Request, SourceSpan, TextureDimension, Variant, generate, manifest, target,
+};
 use fragbuf_cpu::{Code, Device, Mesh, Settings};
 use fragbuf_frame::{Decisions, PoolSize, Sizing, Value as Uniform};
 use fragbuf_model::UniformType;
 use serde_json::{Value, json};
 
 use super::cpu_image::{is_exact, shown};
+use super::lookups::lookups;
 use super::numbers::Numbers;
 use super::peeling_loop;
 use super::scene::{Quad, image, over_background, quads};
@@ -44,10 +47,14 @@ pub struct Job {
     uniforms: Value,
     /// External textures: name, format, and a number per pixel.
     textures: Vec<(String, &'static str, Vec<f32>)>,
+    /// Textures of the description: name, columns, rows and slices, texels.
+    described: Vec<Described>,
     pub drops_objects: bool,
     /// What each run shows.
     pub expected: Vec<Expected>,
 }
+
+type Described = (String, TextureDimension, [u32; 3], Vec<[f32; 4]>);
 
 /// What a run shows.
 pub struct Expected {
@@ -80,7 +87,8 @@ pub fn all() -> Vec<Job> {
     let mut jobs = techniques(&Runs::All);
     for (name, description, set) in named() {
         let variant = crate::cases::checked(&description, &set).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
-        jobs.extend(job(&format!("case {name}"), &variant, (&Registry::builtin(), Judge::CpuDevice), &Runs::All));
+        let runs = runs_of(&variant);
+        jobs.extend(job(&format!("case {name}"), &variant, (&Registry::builtin(), Judge::CpuDevice), &runs));
     }
     for key in ["k_peeling", "f2b", "dual_ll", "dual_2p"] {
         let variant = technique(key, &[("objects", "unpeeled")]);
@@ -91,11 +99,21 @@ pub fn all() -> Vec<Job> {
             &Runs::All,
         ));
     }
+    for (number, lookup) in lookups().into_iter().enumerate() {
+        let name = format!("{} {number}", lookup.name);
+        let runs = runs_of(&lookup.variant);
+        jobs.extend(job(&name, &lookup.variant, (&Registry::builtin(), Judge::CpuDevice), &runs));
+    }
     let registry = peeling_registry();
     let draft = Draft::from_technique("peeled", &SourceSpan::new("peeled", 1, 1));
     let variant = fragbuf::check(&draft, &registry).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
     jobs.extend(job("a loop until no sample passes", &variant, (&registry, Judge::CpuDevice), &Runs::All));
     jobs
+}
+
+/// Returns the runs of a description. A frame with images has no slices.
+fn runs_of(variant: &Variant) -> Runs {
+    if variant.images.is_empty() { Runs::All } else { Runs::Whole }
 }
 
 /// Returns a job for every technique that portable WGSL can express.
@@ -176,13 +194,13 @@ fn job(name: &str, variant: &Variant, (registry, judge): (&Registry, Judge), run
         scenes.push((vertices(&quads, &inputs), quads.clone()));
         numbers.shuffle(&mut quads);
     }
-    let textures = textures(plan);
+    let (textures, described) = (textures(plan), described(variant));
     let loses_nothing =
         judge == Judge::Reference && !plan.hazards.iter().any(|hazard| hazard.permits.shows()) && is_exact(plan);
     let run = |what: &str, scenes: &[(Vec<u8>, Vec<Quad>)], slice: Option<u32>, sizing: Sizing, options: Value| {
         let decisions = if options["readback"] == "lag" { Decisions::LAGGED } else { Decisions::Immediate };
         let settings = Settings { slice, sizing, decisions, ..Settings::new(SIZE[0], SIZE[1]) };
-        let images = images((variant, registry), judge, plan, scenes, &textures, settings);
+        let images = images((variant, registry), judge, plan, scenes, (&textures, &described), settings);
         let slices = slice.map_or(1, |rows| u64::from(SIZE[1].div_ceil(rows)));
         let numbers: Vec<usize> = (0..scenes.len()).collect();
         // Without readbacks, boxes of objects are not drawn.
@@ -216,7 +234,17 @@ fn job(name: &str, variant: &Variant, (registry, judge): (&Registry, Judge), run
     let uniforms =
         plan.variant.uniforms.iter().map(|uniform| (uniform.name.value.clone(), uniform_value(uniform.kind.value).1));
     let uniforms = uniforms.collect::<serde_json::Map<_, _>>().into();
-    Some(Job { name: name.to_owned(), generation, scenes, runs, uniforms, textures, drops_objects, expected })
+    Some(Job {
+        name: name.to_owned(),
+        generation,
+        scenes,
+        runs,
+        uniforms,
+        textures,
+        described,
+        drops_objects,
+        expected,
+    })
 }
 
 /// Writes the files of jobs into a folder, and their list into `list`.
@@ -240,7 +268,12 @@ pub fn write(jobs: &[Job], folder: &Path, list: &str) {
             let bytes: Vec<u8> = texels.iter().flat_map(|texel| texel.to_le_bytes()).collect();
             json!({ "name": name, "format": format, "file": put(path(&format!("{name}.bin")), &bytes) })
         });
-        let textures: Vec<Value> = textures.collect();
+        let described = job.described.iter().map(|(name, dimension, size, texels)| {
+            let bytes: Vec<u8> = texels.iter().flatten().flat_map(|value| value.to_le_bytes()).collect();
+            let file = put(path(&format!("{name}.bin")), &bytes);
+            json!({ "name": name, "dimension": dimension.keyword(), "size": size, "file": file })
+        });
+        let textures: Vec<Value> = textures.chain(described).collect();
         json!({
             "name": job.name, "folder": number.to_string(), "size": SIZE, "background": BACKGROUND, "symbols": {},
             "uniforms": job.uniforms, "textures": textures, "scenes": scenes, "runs": job.runs,
@@ -315,7 +348,9 @@ fn uniform_value(kind: UniformType) -> (Uniform, Value) {
 
 /// Returns a number per pixel for each external texture of a plan.
 fn textures(plan: &Plan) -> Vec<(String, &'static str, Vec<f32>)> {
-    let external = plan.resources.iter().filter(|planned| planned.is_external());
+    let is_of_plan =
+        |planned: &&fragbuf_codegen::PlannedResource| planned.is_external() && !planned.is_of_description();
+    let external = plan.resources.iter().filter(is_of_plan);
     let texture = external.map(|planned| {
         let name = planned.resource.name.clone();
         let format = if name == "opaque" { "depth32float" } else { "r32float" };
@@ -325,13 +360,25 @@ fn textures(plan: &Plan) -> Vec<(String, &'static str, Vec<f32>)> {
     texture.collect()
 }
 
+/// Returns texels for each texture of a description.
+fn described(variant: &Variant) -> Vec<Described> {
+    let mut numbers = Numbers::seeded(11);
+    let texture = |texture: &fragbuf::Texture| {
+        let size = if texture.dimension.value == TextureDimension::D2 { [3, 2, 1] } else { [3, 2, 4] };
+        let count = size.iter().product::<u32>();
+        let texels = (0..count).map(|_| std::array::from_fn(|_| numbers.below(1000) as f32 / 1000.0)).collect();
+        (texture.name.value.clone(), texture.dimension.value, size, texels)
+    };
+    variant.textures.iter().map(texture).collect()
+}
+
 /// Returns the image of each scene.
 fn images(
     (variant, registry): (&Variant, &Registry),
     judge: Judge,
     plan: &Plan,
     scenes: &[(Vec<u8>, Vec<Quad>)],
-    textures: &[(String, &'static str, Vec<f32>)],
+    (textures, described): (&[(String, &'static str, Vec<f32>)], &[Described]),
     settings: Settings,
 ) -> Vec<Vec<[f64; 3]>> {
     if judge == Judge::Reference && is_exact(plan) {
@@ -344,6 +391,9 @@ fn images(
         device.set_uniform(&uniform.name.value, uniform_value(uniform.kind.value).0).unwrap();
     }
     textures.iter().for_each(|(name, _, texels)| device.set_texture(name, texels).unwrap());
+    for (name, _, size, texels) in described {
+        device.set_description_texture(name, *size, texels).unwrap();
+    }
     let image = |(bytes, quads): &(Vec<u8>, Vec<Quad>)| {
         let words: Vec<u32> = bytes.chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect();
         let indices: Vec<u32> = (0..6 * quads.len() as u32).collect();

@@ -4,6 +4,7 @@
 pub mod continued;
 pub mod cpu_image;
 pub mod effects;
+pub mod lookups;
 pub mod numbers;
 pub mod panes;
 pub mod peeled_scene;

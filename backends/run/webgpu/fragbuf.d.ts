@@ -107,7 +107,7 @@ export interface Call {
     uniforms?: Record<string, number | ArrayLike<number>>;
     /** Symbols that change, such as `k`. `encode` takes none. */
     symbols?: Record<string, number>;
-    /** External textures of the plan: `opaque`, `importance`. */
+    /** Textures of the description by their names, and external textures of the plan: `opaque`, `importance`. */
     textures?: Record<string, GPUTexture>;
     /**
      * The boxes of your objects, for plans that draw boxes; other plans ignore them. `draw` gets the numbers of those to draw; all of them

@@ -286,6 +286,9 @@ export class FragmentBuffer {
         const { plan, memory, options } = this.#state;
         const values = new Values(plan, size, this.#state.values.reserve, set);
         check(plan, values, this.#device, options.format, "device");
+        if (plan.whole_frame && options.rows < size[1]) {
+            throw new Error(`\`rows\` is at least ${size[1]}, the rows of the frame: closures read images of the description at other pixels`);
+        }
         const rows = Math.min(options.rows ?? memory.fittingRows(values, size, options.memory), size[1]);
         const sliced = values.withRows(rows);
         const excess = memory.excess(sliced, size[0], size[1], options.memory);
@@ -334,7 +337,7 @@ export class FragmentBuffer {
             try {
                 return this.#apply(current);
             } catch (error) {
-                if (!(error instanceof ExcessError) || this.#state.rows === 1) throw error;
+                if (!(error instanceof ExcessError) || this.#state.rows === 1 || this.#state.plan.whole_frame) throw error;
                 this.#setRows(Math.ceil(this.#state.rows / 2));
             }
         }

@@ -43,7 +43,7 @@ export class Frame {
             try {
                 yield* this.#slice();
             } catch (error) {
-                if (!(error instanceof ExcessError) || rows === 1 || this.isSliceWritten) throw error;
+                if (!(error instanceof ExcessError) || rows === 1 || this.isSliceWritten || plan.whole_frame) throw error;
                 this.state.setRows(Math.ceil(rows / 2));
                 this.#dropCopies(copied);
                 continue;

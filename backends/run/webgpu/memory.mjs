@@ -27,6 +27,8 @@ export class Memory {
     /** Returns the most rows of a slice that fit, from 1 to the height of the frame. Throws if one row does not fit. */
     fittingRows(values, [, height], budget) {
         const excess = (rows) => this.excess(values.withRows(rows), values.size[0], height, budget);
+        // A frame whose passes read other pixels is not divided.
+        if (this.plan.whole_frame) return height;
         const problem = excess(1);
         if (problem) throw new ExcessError(problem);
         let [fits, tooMany] = excess(height) ? [1, height] : [height, height + 1];
@@ -92,8 +94,10 @@ export class Memory {
         this.version++;
     }
 
-    /** Uses a texture of the caller for an external resource. */
+    /** Uses a texture of the caller for an external resource, or for the texture that the description calls `name`. */
     supply(name, texture, size) {
+        const described = this.plan.resources.find((known) => known.texture?.described === name);
+        if (described) return this.#supplyDescribed(described, texture);
         const resource = this.plan.resources.find((known) => known.name === name && known.init === "external");
         if (!resource) throw new Error(`the plan has no external texture \`${name}\`: remove it from \`textures\``);
         const [width, height] = size;
@@ -109,11 +113,27 @@ export class Memory {
         }
     }
 
+    /** Uses a texture of the caller for a texture of the description: of any size and any format of floats. */
+    #supplyDescribed({ name, texture: { described, view_dimension: dimension } }, texture) {
+        const isFlat = dimension === "3d" || texture?.depthOrArrayLayers === 1;
+        if (texture?.dimension !== dimension || !isFlat || texture.sampleCount !== 1) {
+            throw new Error(
+                `the texture \`${described}\` is ${texture?.dimension} with ${texture?.depthOrArrayLayers} layers and ` +
+                    `${texture?.sampleCount} samples: it must be ${dimension} with one sample, and a format of floats`,
+            );
+        }
+        if (this.external.get(name) !== texture) {
+            this.external.set(name, texture);
+            this.version++;
+        }
+    }
+
     /** Returns the texture of a resource; `undefined` for a buffer. */
     texture(name) {
         const texture = this.textures.get(name) ?? this.external.get(name);
         if (!texture && this.plan.resources.some((resource) => resource.name === name && resource.init === "external")) {
-            throw new Error(`the plan reads the external texture \`${name}\`: pass it in \`textures: { ${name}: … }\``);
+            const known = this.plan.resources.find((resource) => resource.name === name).texture.described ?? name;
+            throw new Error(`the plan reads the external texture \`${known}\`: pass it in \`textures: { ${known}: … }\``);
         }
         return texture;
     }

@@ -69,7 +69,9 @@ pub struct Part {
 pub(super) fn size(resource: &Resource) -> Result<Formula, FormulaError> {
     let mut factors: Vec<Formula> = resource.extents.iter().map(|extent| extent.length.clone()).collect();
     match resource.element {
-        Element::Word | Element::Texels(_) => {}
+        // The caller allocates it.
+        Element::Texels(_) => return Ok("0".into()),
+        Element::Word => {}
         Element::Word64 => factors.push("2".into()),
         Element::Entry => factors.push("entry_words".into()),
         Element::Value => factors.push("value_words".into()),

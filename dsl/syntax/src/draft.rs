@@ -18,7 +18,8 @@ use crate::types::{Shape, Type};
 
 /// Returns the draft of a description: checks and lowers all functions.
 pub(crate) fn build(description: RawDescription, report: &mut Report) -> Draft {
-    let RawDescription { name, preset, items } = description;
+    let RawDescription { name, preset, mut items } = description;
+    items.reject_names_twice(report);
     let environment = environment(&items, report);
     let Items { attributes, uniforms, textures, images, keep, choices, functions, invalid_attributes, effect, .. } =
         items;

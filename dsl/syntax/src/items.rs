@@ -64,7 +64,6 @@ impl Items {
         if is_first(&mut self.uniform_block, span, "uniform", report) {
             self.uniforms = uniforms;
             self.invalid_uniforms.extend(invalid);
-            self.reject_names_twice(report);
         }
     }
 
@@ -74,22 +73,18 @@ impl Items {
         if is_first(&mut self.texture_block, span, "texture", report) {
             self.textures = textures;
             self.invalid_uniforms.extend(invalid);
-            self.reject_names_twice(report);
         }
     }
 
-    /// Adds an image; its name must differ from those of uniforms, textures and other images, which closures read in the same way.
-    pub(crate) fn add_image(&mut self, name: Spanned<String>, function: RawFunction, report: &mut Report) {
+    /// Adds an image.
+    pub(crate) fn add_image(&mut self, name: Spanned<String>, function: RawFunction) {
         self.images.push(name);
-        let count = report.count();
-        self.reject_names_twice(report);
-        if report.count() == count {
-            self.functions.push(function);
-        }
+        self.functions.push(function);
     }
 
-    /// Reports a name that two of the uniforms, textures and images have, and removes the second.
-    fn reject_names_twice(&mut self, report: &mut Report) {
+    /// Reports names that two of the uniforms, textures and images have, because closures read all of them in the same way. Removes the second
+    /// of each.
+    pub(crate) fn reject_names_twice(&mut self, report: &mut Report) {
         let mut seen: Vec<Spanned<String>> = self.uniforms.iter().map(|uniform| uniform.name.clone()).collect();
         let mut is_new = |name: &Spanned<String>, what: &str| {
             let first = seen.iter().find(|other| other.value == name.value).cloned();
@@ -105,6 +100,13 @@ impl Items {
         };
         self.textures.retain(|texture| is_new(&texture.name, "texture"));
         self.images.retain(|name| is_new(name, "image"));
+        let mut left: Vec<&str> = self.images.iter().map(|name| name.value.as_str()).collect();
+        self.functions.retain(|function| {
+            let Role::Image(name) = &function.role else { return true };
+            // The first function of an image that is left.
+            let place = left.iter().position(|image| image == name);
+            place.map(|place| left.remove(place)).is_some()
+        });
     }
 
     /// Adds `keep`; a second one is an error.

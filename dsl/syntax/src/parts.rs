@@ -149,7 +149,7 @@ impl Assembly {
             Part::Image(name, _) => {
                 let name = names::declared(name, "image", report);
                 let function = closure(tokens, Role::Image(name.value.clone()), report)?;
-                self.items.add_image(name, function, report);
+                self.items.add_image(name, function);
             }
             Part::Helper(_) => {
                 let tokens = bounded(tokens, report)?;

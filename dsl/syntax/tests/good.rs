@@ -33,7 +33,9 @@ fn draft(name: &str) -> Draft {
 
 fn functions(draft: &Draft) -> Vec<&UserFunction> {
     let criterion = draft.keep.as_ref().and_then(|keep| keep.criterion.as_ref());
-    draft.helpers.iter().chain(criterion).chain(&draft.constraints).chain(&draft.resolve).collect()
+    let images = draft.images.iter().map(|image| &image.function);
+    let functions = draft.helpers.iter().chain(criterion).chain(&draft.constraints).chain(images);
+    functions.chain(&draft.between).chain(&draft.resolve).collect()
 }
 
 #[test]

@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 
 use fragbuf_dsl::Registry;
-use fragbuf_dsl::builder::{Buffer, Closure, Format, Function, KeepCount, OptionValue, UniformType, Value, value};
+use fragbuf_dsl::builder::{
+    Buffer, Closure, Format, Function, KeepCount, OptionValue, TextureDimension, UniformType, Value, value,
+};
 use fragbuf_templates::vocabulary::ParameterType;
 
 /// A seeded generator (SplitMix64), the same on every machine.
@@ -36,10 +38,13 @@ pub struct Description {
     preset: Option<String>,
     attributes: Vec<(String, Format)>,
     uniforms: Vec<(String, UniformType)>,
+    textures: Vec<(String, TextureDimension)>,
+    images: Vec<(String, String)>,
     keep: Vec<(Option<u32>, Option<String>)>,
     constraints: Vec<String>,
     choices: Vec<Choice>,
     resolve: Option<String>,
+    between: Option<String>,
     helpers: Vec<String>,
 }
 
@@ -82,6 +87,11 @@ impl Description {
                     .push((random.choose_from(&["depth", "vec3", "match", "größe"]).to_string(), Format::F32));
             }
         }
+        for name in ["lut", "volume", "far"] {
+            if random.once_in(6) {
+                self.textures.push((name.to_owned(), *random.choose_from(&TextureDimension::ALL)));
+            }
+        }
         for name in ["far", "eye", "steps", "texture"] {
             if random.once_in(2) {
                 self.uniforms.push((name.to_owned(), *random.choose_from(&UniformType::ALL)));
@@ -106,6 +116,19 @@ impl Description {
             let name = random.choose_from(&["weight", "weight", "resolve", "vec2"]);
             let body = self.number(random, 2);
             self.helpers.push(format!("fn {name}(f: Fragment, u: Uniforms, x: f32) -> f32 {{ {body} + x }}"));
+        }
+        for name in ["near", "blurred", "lut"] {
+            if random.once_in(10) {
+                let value = self.number(random, 1).replace("f.", "fragments[0].");
+                let earlier = random.choose_from(&["0.0", "0.0", "u.near.at(1, -1).x", "u.late.at(0, 0).y"]);
+                let closure = format!("|fragments, u| Vec4::splat({value} + {earlier})");
+                self.images.push((name.to_owned(), closure));
+            }
+        }
+        if random.once_in(8) {
+            let (front, back) = (self.number(random, 1), self.number(random, 1));
+            let (front, back) = (front.replace("f.", "front."), back.replace("f.", "back."));
+            self.between = Some(format!("|front, back, gap, u| Vec4::splat({front} * gap - {back})"));
         }
         if random.once_in(2) {
             let factor = self.number(random, 2);
@@ -156,6 +179,10 @@ impl Description {
             UniformType::U32 | UniformType::I32 => format!("(u.{name} as f32)"),
             UniformType::Vec2 | UniformType::Vec3 | UniformType::Vec4 => format!("u.{name}.length()"),
         }));
+        leaves.extend(self.textures.iter().map(|(name, dimension)| match dimension {
+            TextureDimension::D2 => format!("u.{name}.sample(vec2(f.depth, 0.5)).x"),
+            TextureDimension::D3 => format!("u.{name}.load(1, f.depth as i32, 0).w"),
+        }));
         random.choose_from(&leaves).clone()
     }
 
@@ -174,6 +201,8 @@ impl Description {
         source.push_str(&block("fragment", rows.collect()));
         let rows = self.uniforms.iter().map(|(name, kind)| format!("{name}: {}", kind.keyword()));
         source.push_str(&block("uniform", rows.collect()));
+        let rows = self.textures.iter().map(|(name, dimension)| format!("{name}: {}", dimension.keyword()));
+        source.push_str(&block("texture", rows.collect()));
         for (count, criterion) in &self.keep {
             let count = count.map_or("all".to_owned(), |count| count.to_string());
             let criterion = criterion.as_ref().map_or(String::new(), |criterion| format!(" least {criterion}"));
@@ -188,6 +217,12 @@ impl Description {
         for (axis, alternatives) in &self.choices {
             let alternatives: Vec<String> = alternatives.iter().map(alternative_source).collect();
             let _ = writeln!(source, "    {axis}: {};", alternatives.join(" else "));
+        }
+        for (name, closure) in &self.images {
+            let _ = writeln!(source, "    image {name} {closure};");
+        }
+        if let Some(between) = &self.between {
+            let _ = writeln!(source, "    between {between};");
         }
         if let Some(resolve) = &self.resolve {
             let _ = writeln!(source, "    resolve {resolve}");
@@ -208,6 +243,9 @@ impl Description {
         for (name, kind) in &self.uniforms {
             buffer = buffer.uniform(name, *kind);
         }
+        for (name, dimension) in &self.textures {
+            buffer = buffer.texture(name, *dimension);
+        }
         for (count, criterion) in &self.keep {
             let count = count.map_or(KeepCount::All, KeepCount::from);
             buffer = match criterion {
@@ -226,6 +264,12 @@ impl Description {
                 options.iter().fold(value(key), |value, (name, option)| value.option(name, option.clone()))
             });
             buffer = buffer.choose(axis, alternatives.reduce(Value::or_else).unwrap());
+        }
+        for (name, closure) in &self.images {
+            buffer = buffer.image(name, Closure::text(closure));
+        }
+        if let Some(between) = &self.between {
+            buffer = buffer.between(Closure::text(between));
         }
         match &self.resolve {
             Some(resolve) => buffer.resolve(Closure::text(resolve)),

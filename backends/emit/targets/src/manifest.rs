@@ -174,6 +174,9 @@ fn part(context: &Context<'_>) -> Map<String, Value> {
         "constants".into(),
         plan.constants.iter().map(|(name, value)| (name.clone(), Value::from(*value))).collect::<Map<_, _>>().into(),
     );
+    if plan.needs_whole_frame() {
+        map.insert("whole_frame".into(), true.into());
+    }
     map.insert("entry".into(), entry(plan));
     map.insert("uniform_blocks".into(), uniform_blocks(context));
     if context.form == Form::Program {

@@ -14,8 +14,10 @@ pub mod manifest;
 mod objects;
 pub mod panes;
 mod pass;
+mod resource;
 #[cfg(test)]
 mod tests;
+mod texels;
 mod uniforms;
 mod values;
 mod walk;
@@ -23,6 +25,7 @@ mod walk;
 use std::fmt;
 
 pub use objects::{BOX, Image, Object, Scene};
+pub use texels::{MOST_TEXELS, Texels};
 pub use uniforms::Uniforms;
 pub use values::Values;
 pub use walk::{Call, Device, Walk};

@@ -71,6 +71,9 @@ pub struct Plan {
     pub vertex_inputs: Vec<VertexInput>,
     /// Buffers and textures.
     pub resources: Vec<Resource>,
+    /// Whether passes read memory of other pixels, so that a frame cannot be divided into slices.
+    #[serde(default)]
+    pub whole_frame: bool,
     /// Pairs of resources that swap their roles, at the end of the frame.
     pub exchanges: Vec<Exchange>,
     /// The frame.
@@ -167,32 +170,6 @@ pub struct VertexInput {
     /// Its type in WGSL.
     #[serde(rename = "type")]
     pub kind: String,
-}
-
-/// A buffer or a texture.
-#[derive(Clone, Deserialize)]
-pub struct Resource {
-    /// Its name.
-    pub name: String,
-    /// `{"clear": word}`, `keep` or `external`.
-    pub init: serde_json::Value,
-    /// A formula for its 32-bit words.
-    pub words: String,
-    /// A formula for its bytes, at least `least_bytes`.
-    pub bytes: String,
-    /// Of a buffer.
-    pub least_bytes: Option<u64>,
-    /// Of a texture.
-    pub texture: Option<Texture>,
-}
-
-/// What a texture has beside its words.
-#[derive(Clone, Deserialize)]
-pub struct Texture {
-    /// Its format, as WebGPU names it.
-    pub format: String,
-    /// A formula for its samples per pixel.
-    pub samples: String,
 }
 
 /// A counter of the frame.
@@ -295,6 +272,8 @@ pub struct Exchange {
     /// Whether 1 is added.
     pub odd: bool,
 }
+
+pub use crate::resource::{Resource, Texture, ViewDimension};
 
 impl Plan {
     /// What the text of a target requires of its API.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use fragbuf_follow::manifest::{Kind, Pass, Plan};
-use fragbuf_follow::{Call, Object, Scene, Uniforms, Values};
+use fragbuf_follow::{Call, Object, Scene, Texels, Uniforms, Values};
 use glow::HasContext as _;
 
 use crate::memory::Memory;
@@ -108,6 +108,20 @@ impl<'c> Device<'c> {
         let memory = Memory::texture_of(gl, texture, 1, self.size)?;
         memory.write(gl, texels, self.size);
         if let Some(former) = self.memory.insert(name.to_owned(), memory) {
+            former.delete(gl);
+        }
+        Ok(())
+    }
+
+    /// Creates a texture of the description with its texels.
+    pub fn set_texels(&mut self, name: &str, texels: &Texels<'_>) -> Result<(), Error> {
+        let gl = &self.context.gl;
+        let most = [glow::MAX_TEXTURE_SIZE, glow::MAX_3D_TEXTURE_SIZE];
+        // SAFETY: the context is current.
+        let most = most.map(|limit| unsafe { gl.get_parameter_i32(limit) }.max(0) as u32);
+        let (resource, dimension) = texels.resource(&self.plan, name, most)?;
+        let memory = Memory::of_texels(gl, texels, dimension)?;
+        if let Some(former) = self.memory.insert(resource.name.clone(), memory) {
             former.delete(gl);
         }
         Ok(())

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use fragbuf_follow::manifest::{Counter, File, Manifest, Plan, VertexInput};
-use fragbuf_follow::{Device as _, Image, Scene, Values, Walk};
+use fragbuf_follow::{Device as _, Image, Scene, Texels, Values, Walk};
 use glow::HasContext as _;
 
 use crate::device::Device;
@@ -96,7 +96,13 @@ impl<'c> Host<'c> {
 
     /// The textures that the engine supplies, such as the depth of its opaque surfaces.
     pub fn external_textures(&self) -> impl Iterator<Item = &str> {
-        self.plan.resources.iter().filter(|resource| resource.init == "external").map(|resource| resource.name.as_str())
+        let external = self.plan.resources.iter().filter(|resource| resource.init == "external");
+        external.filter(|resource| resource.described().is_none()).map(|resource| resource.name.as_str())
+    }
+
+    /// Sets a texture of the description, by its name there. It is kept for all frames.
+    pub fn set_texels(&mut self, name: &str, texels: &Texels<'_>) -> Result<(), Error> {
+        self.device.set_texels(name, texels)
     }
 
     /// Sets the texels of an external texture: a number per pixel, row by row from the top. They are kept for all frames.
@@ -109,10 +115,15 @@ impl<'c> Host<'c> {
 
     /// Draws a frame over a background, without reading it back. The vertices are those of the last call of [`Self::render`].
     pub fn draw(&mut self, scene: &Scene<'_>, background: [f32; 4]) -> Result<(), Error> {
-        if let Some(missing) = self.external_textures().find(|name| !self.device.has(name)) {
-            return Err(Error(format!(
-                "`{missing}` is a texture of the engine: set its texels before the first frame"
-            )));
+        let mut external = self.plan.resources.iter().filter(|resource| resource.init == "external");
+        if let Some(missing) = external.find(|resource| !self.device.has(&resource.name)) {
+            let (described, missing) = (missing.described(), &missing.name);
+            return Err(Error(match described {
+                Some((name, _)) => {
+                    format!("`{name}` is a texture of the description: set it with `set_texels` before the first frame")
+                }
+                None => format!("`{missing}` is a texture of the engine: set its texels before the first frame"),
+            }));
         }
         self.device.uniforms.bytes()?;
         let size = self.device.size.map(|side| side as u32);

@@ -28,7 +28,7 @@ mod timing;
 pub use api::Api;
 pub use context::Context;
 pub use fragbuf_follow::manifest::VertexInput;
-pub use fragbuf_follow::{Error, Image, Object, Scene};
+pub use fragbuf_follow::{Error, Image, Object, Scene, Texels};
 pub use host::Host;
 pub use material::Material;
 pub use peer::{Description, PROJECTS, Peer, Project};

@@ -1,6 +1,7 @@
 //! The buffers and textures of a plan.
 
-use fragbuf_follow::manifest::Texture;
+use fragbuf_follow::Texels;
+use fragbuf_follow::manifest::{Texture, ViewDimension};
 use glow::HasContext as _;
 
 use crate::api::fill;
@@ -116,6 +117,39 @@ impl Memory {
     /// Creates a texture of the manifest with the size of the frame.
     pub fn texture_of(gl: &glow::Context, texture: &Texture, samples: u64, size: [i32; 2]) -> Result<Self, Error> {
         Memory::texture(gl, Format::named(&texture.format)?, samples, size)
+    }
+
+    /// Creates a texture of the description.
+    pub fn of_texels(gl: &glow::Context, texels: &Texels<'_>, dimension: ViewDimension) -> Result<Self, Error> {
+        let [width, height, slices] = texels.size.map(|side| side as i32);
+        let kind = match dimension {
+            ViewDimension::D2 => glow::TEXTURE_2D,
+            ViewDimension::D3 => glow::TEXTURE_3D,
+        };
+        let format = Format::color(glow::RGBA32F);
+        let bytes = texels.bytes();
+        let data = glow::PixelUnpackData::Slice(Some(&bytes));
+        // SAFETY: the context is current, and there are as many texels as the texture has.
+        unsafe {
+            let texture = gl.create_texture().map_err(Error)?;
+            gl.bind_texture(kind, Some(texture));
+            let channels = (glow::RGBA, glow::FLOAT);
+            match dimension {
+                ViewDimension::D2 => {
+                    gl.tex_storage_2d(kind, 1, format.internal, width, height);
+                    gl.tex_sub_image_2d(kind, 0, 0, 0, width, height, channels.0, channels.1, data);
+                }
+                ViewDimension::D3 => {
+                    gl.tex_storage_3d(kind, 1, format.internal, width, height, slices);
+                    gl.tex_sub_image_3d(kind, 0, 0, 0, 0, width, height, slices, channels.0, channels.1, data);
+                }
+            }
+            // Shaders read single texels.
+            gl.tex_parameter_i32(kind, glow::TEXTURE_MIN_FILTER, glow::NEAREST as i32);
+            gl.tex_parameter_i32(kind, glow::TEXTURE_MAG_FILTER, glow::NEAREST as i32);
+            gl.bind_texture(kind, None);
+            Ok(Memory::Texture { texture, kind, format })
+        }
     }
 
     /// The bytes of a buffer.

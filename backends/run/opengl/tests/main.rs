@@ -10,6 +10,7 @@ mod errors;
 mod facing;
 #[path = "../../../../tests/oracle/hosts.rs"]
 mod hosts;
+mod lookups;
 mod material;
 mod peeling;
 mod peers;

@@ -33,7 +33,7 @@ const FRAMES: [([u32; 2], Option<u32>); 6] =
     [([13, 7], None), ([13, 7], Some(3)), ([1, 1], None), ([31, 1], None), ([1, 9], Some(2)), ([37, 23], None)];
 
 /// SwiftShader's manifest for the Vulkan loader, from Debian's package chromium.
-const SWIFTSHADER: &str = "/usr/lib/chromium/vk_swiftshader_icd.json";
+pub const SWIFTSHADER: &str = "/usr/lib/chromium/vk_swiftshader_icd.json";
 
 /// Draws quads over the background, and returns the image.
 pub fn draw(stage: &Headless, renderer: &mut Renderer, quads: &[Quad], size: [u32; 2]) -> Result<Vec<[f32; 4]>, Error> {

@@ -35,6 +35,7 @@ mod invariance;
 mod lagged;
 mod larger;
 mod limits;
+mod lookups;
 mod losses;
 mod lowered;
 mod manifests;

@@ -233,3 +233,65 @@ fn malformed_xml_is_an_error_with_a_line() {
     let other = read("g.vtu", b"hello", &[]).unwrap_err().to_string();
     assert!(other.contains("the file is no VTK, which begins with `# vtk DataFile`"), "{other}");
 }
+
+/// Parsing compares attributes and namespaces with each other, and each line, array and block of data is looked up: none of it takes long.
+#[test]
+fn large_documents_are_errors_at_once() {
+    let start = std::time::Instant::now();
+    let whole = String::from_utf8(xml(Storage::Words)).unwrap();
+    let cases = [
+        (
+            whole.replace(
+                "<Points>",
+                &format!("<Points {}>", (0..200_000).map(|at| format!("a{at}=\"\" ")).collect::<String>()),
+            ),
+            "an element with more than 128 attributes",
+        ),
+        (
+            whole.replace("<Points>", &(0..60_000).map(|at| format!("<a xmlns:b{at}=\"c{at}\">")).collect::<String>()),
+            "more than 16 namespaces",
+        ),
+        (whole.replace("<Points>", &"<a>".repeat(400_000)), "invalid XML"),
+        (
+            whole.replace(
+                "<Piece",
+                &format!("{}<Piece", "<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\"/>\n".repeat(100_000)),
+            ),
+            "`Piece` has no `Points`",
+        ),
+    ];
+    for (text, part) in cases {
+        let (position, message) = malformed("g.vtu", &text);
+        assert!(
+            matches!(position, FilePosition::Line(_)) && message.contains(part),
+            "{position:?}: {message}, not {part}"
+        );
+    }
+    assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+    // A document takes its memory before it is parsed.
+    let folder = tempfile::TempDir::new().unwrap();
+    let path = folder.path().join("g.vtu");
+    std::fs::write(&path, whole.replace("<Points>", &"<a/>".repeat(100_000))).unwrap();
+    let limits = Limits { memory: 4 << 20, ..Limits::default() };
+    assert!(matches!(load_with(&path, COLOR, &[], &limits), Err(Error::TooLarge { .. })));
+}
+
+/// Pieces follow each other, with points of their own. A piece without an array has zeros.
+#[test]
+fn pieces_are_one_grid() {
+    let whole = String::from_utf8(xml(Storage::Words)).unwrap();
+    let (begin, end) = (whole.find("<Piece").unwrap(), whole.find("</Piece>").unwrap() + 8);
+    let piece = &whole[begin..end];
+    let without = piece.replace("\"heat\"", "\"cold\"").replace("\"label\"", "\"other\"");
+    let text = whole.replace(piece, &[&without, piece].concat());
+    let scene = read("g.vtu", text.as_bytes(), &[attribute("heat", 1, false), attribute("boundary", 1, true)]).unwrap();
+    let object = &scene.objects[0];
+    assert_eq!((object.triangles.len(), object.positions.len()), (14, 16));
+    assert_eq!(object.attributes[1].iter().filter(|word| **word == 1).count(), 10);
+    let sum = |words: &[u32]| floats(words).iter().sum::<f32>();
+    // Five points of the surface, and three of the face inside.
+    assert_eq!((sum(&object.attributes[0][..8]), sum(&object.attributes[0][8..])), (0.0, 2.5 + 1.5));
+    let scene = read("g.vtu", text.as_bytes(), &[attribute("label", 1, true)]).unwrap();
+    let labels = [[0; 21].as_slice(), &[7; 12], &[9; 9]].concat();
+    assert_eq!(scene.objects[0].attributes[0], labels);
+}

@@ -72,7 +72,7 @@ fn layers(aspect: vk::ImageAspectFlags) -> vk::ImageSubresourceLayers {
 }
 
 fn extent(texture: &Texture) -> vk::Extent3D {
-    vk::Extent3D { width: texture.size[0], height: texture.size[1], depth: 1 }
+    vk::Extent3D { width: texture.size[0], height: texture.size[1], depth: texture.slices }
 }
 
 impl Engine<'_> {
@@ -129,8 +129,9 @@ impl Engine<'_> {
 
     /// Uploads the texels of a texture, row by row from the top, and waits for the device.
     pub fn write_texture(&mut self, mut texture: Texture, name: &str, texels: &[u8]) -> Result<(), Error> {
-        let [width, height] = self.size.map(u64::from);
-        let wanted = texel_bytes(texture.format).map(|bytes| bytes * width * height);
+        let [width, height] = texture.size.map(u64::from);
+        let texel = texel_bytes(texture.format);
+        let wanted = texel.map(|bytes| bytes * width * height * u64::from(texture.slices));
         if wanted != Some(texels.len() as u64) {
             let wanted = wanted.map_or("a format that is written".to_owned(), |wanted| format!("{wanted} bytes"));
             return Err(Error(format!(

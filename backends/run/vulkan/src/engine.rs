@@ -166,7 +166,10 @@ impl<'c> Engine<'c> {
             let resource = self.plan.resource(name);
             let resource = resource.ok_or_else(|| Error(format!("there is no resource `{name}`")))?;
             if resource.init == "external" {
-                return Err(Error(format!("the plan reads the external texture `{name}`: set it with `set_texture`")));
+                return Err(Error(match resource.described() {
+                    Some((name, _)) => format!("the description reads the texture `{name}`: set it with `set_texels`"),
+                    None => format!("the plan reads the external texture `{name}`: set it with `set_texture`"),
+                }));
             }
             values.bytes(resource).map_err(|error| Error(format!("`{name}` has no memory: {error}")))?;
         }

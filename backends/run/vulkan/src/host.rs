@@ -3,12 +3,14 @@
 use std::sync::Arc;
 
 use ash::vk;
-use fragbuf_follow::manifest::{Manifest, Objects, Plan, VertexInput};
-use fragbuf_follow::{Image, Scene, Uniforms, Values, Walk};
+use fragbuf_follow::manifest::{Manifest, Objects, Plan, VertexInput, ViewDimension};
+use fragbuf_follow::{Image, Scene, Texels, Uniforms, Values, Walk};
 
 use crate::context::Context;
 use crate::engine::{Engine, Frame};
 use crate::gpu::Gpu;
+use crate::memory::Texture;
+use crate::names::TEXEL_FORMATS;
 use crate::pipeline::vertex_bytes;
 use crate::requirements::check;
 use crate::{Error, OUTPUT, TARGET};
@@ -83,11 +85,31 @@ impl<'c> Host<'c> {
         self.context.check()
     }
 
+    /// Sets a texture of the description, by its name there. It is kept until the frame is resized.
+    pub fn set_texels(&mut self, name: &str, texels: &Texels<'_>) -> Result<(), Error> {
+        let limits = &self.engine.gpu.limits;
+        let most = [limits.max_image_dimension2_d, limits.max_image_dimension3_d];
+        let plan = self.engine.plan.clone();
+        let (resource, dimension) = texels.resource(&plan, name, most)?;
+        let [width, height, slices] = texels.size;
+        let slices = (dimension == ViewDimension::D3).then_some(slices);
+        let kind = (&TEXEL_FORMATS[..], vk::SampleCountFlags::TYPE_1, false);
+        let what = format!("the texture `{name}`");
+        let texture = Texture::with_slices(self.context, &self.engine.gpu, &what, kind, ([width, height], slices))?;
+        self.engine.write_texture(texture, &resource.name, &texels.bytes())?;
+        self.context.check()
+    }
+
     /// Draws slices of this number of rows, one after the other, so that buffers need less memory. `None`: the whole
     /// frame.
     pub fn set_rows(&mut self, rows: Option<u32>) -> Result<(), Error> {
         if rows == Some(0) {
             return Err(Error("a slice of 0 rows: set 1 at least".to_owned()));
+        }
+        let [_, height] = self.engine.size;
+        if self.engine.plan.whole_frame && rows.is_some_and(|rows| rows < height) {
+            let reason = "closures read images of the description at other pixels";
+            return Err(Error(format!("slices of fewer rows than the {height} of the frame: {reason}")));
         }
         self.rows = rows;
         Ok(())

@@ -27,7 +27,7 @@ mod shaders;
 
 pub use context::{Context, Settings, Validation};
 pub use fragbuf_follow::manifest::{Plan, VertexInput};
-pub use fragbuf_follow::{Error, Image, Object, Scene};
+pub use fragbuf_follow::{Error, Image, Object, Scene, Texels};
 pub use host::Host;
 
 /// The target whose files this host runs.

@@ -29,13 +29,15 @@ pub struct Buffer {
     pub state: State,
 }
 
-/// A texture with the size of the frame.
+/// A texture, of the size of the frame unless it is one of the description.
 pub struct Texture {
     gpu: Rc<Gpu>,
     pub image: vk::Image,
     memory: vk::DeviceMemory,
     pub format: vk::Format,
     pub size: [u32; 2],
+    /// Slices; 1 for a texture of two dimensions.
+    pub slices: u32,
     /// Views of all aspects, of depth and of stencil.
     views: Vec<(vk::ImageAspectFlags, vk::ImageView)>,
     pub state: State,
@@ -138,7 +140,24 @@ impl Texture {
         (formats, samples, is_blended): (&[vk::Format], vk::SampleCountFlags, bool),
         size: [u32; 2],
     ) -> Result<Self, Error> {
-        let usable = formats.iter().map(|format| usable(context, (*format, samples, is_blended), size));
+        let kind = (formats, samples, is_blended);
+        Texture::with_slices(context, gpu, what, kind, (size, None))
+    }
+
+    /// Creates a texture of three dimensions if `slices` gives their number.
+    pub fn with_slices(
+        context: &Context,
+        gpu: &Rc<Gpu>,
+        what: &str,
+        (formats, samples, is_blended): (&[vk::Format], vk::SampleCountFlags, bool),
+        (size, slices): ([u32; 2], Option<u32>),
+    ) -> Result<Self, Error> {
+        let (shape, view_type) = match slices {
+            None => (vk::ImageType::TYPE_2D, vk::ImageViewType::TYPE_2D),
+            Some(_) => (vk::ImageType::TYPE_3D, vk::ImageViewType::TYPE_3D),
+        };
+        let extent = vk::Extent3D { width: size[0], height: size[1], depth: slices.unwrap_or(1) };
+        let usable = formats.iter().map(|format| usable(context, (*format, samples, is_blended), shape, extent));
         let mut problems = Vec::new();
         let format = usable.zip(formats).find_map(|(usable, format)| match usable {
             Ok(()) => Some(*format),
@@ -148,20 +167,27 @@ impl Texture {
             }
         });
         let format = format.ok_or_else(|| Error(format!("{what}: {}", problems.join("; "))))?;
-        let extent = vk::Extent3D { width: size[0], height: size[1], depth: 1 };
         let info = vk::ImageCreateInfo::default()
-            .image_type(vk::ImageType::TYPE_2D)
+            .image_type(shape)
             .format(format)
             .extent(extent)
             .mip_levels(1)
             .array_layers(1)
             .samples(samples)
-            .usage(usage(format));
+            .usage(usage(format, shape));
         // SAFETY: the device supports such images.
         let image = unsafe { gpu.device.create_image(&info, None) }.map_err(failed(what))?;
         let memory = vk::DeviceMemory::null();
-        let mut created =
-            Texture { gpu: gpu.clone(), image, memory, format, size, views: Vec::new(), state: State::default() };
+        let mut created = Texture {
+            gpu: gpu.clone(),
+            image,
+            memory,
+            format,
+            size,
+            slices: extent.depth,
+            views: Vec::new(),
+            state: State::default(),
+        };
         // SAFETY: the image has no memory yet, and the memory is as large as it needs.
         unsafe {
             let needed = gpu.device.get_image_memory_requirements(image);
@@ -173,7 +199,7 @@ impl Texture {
         for aspect in std::iter::once(all).chain(single) {
             let info = vk::ImageViewCreateInfo::default()
                 .image(image)
-                .view_type(vk::ImageViewType::TYPE_2D)
+                .view_type(view_type)
                 .format(format)
                 .subresource_range(whole(aspect));
             // SAFETY: the image has memory.
@@ -214,7 +240,11 @@ pub fn whole(aspect: vk::ImageAspectFlags) -> vk::ImageSubresourceRange {
     }
 }
 
-fn usage(format: vk::Format) -> vk::ImageUsageFlags {
+/// Returns the usages of a texture. None of three dimensions is attached.
+fn usage(format: vk::Format, shape: vk::ImageType) -> vk::ImageUsageFlags {
+    if shape == vk::ImageType::TYPE_3D {
+        return vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
+    }
     let attachment = match is_depth(format) {
         true => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
         false => vk::ImageUsageFlags::COLOR_ATTACHMENT,
@@ -227,15 +257,22 @@ fn usage(format: vk::Format) -> vk::ImageUsageFlags {
 fn usable(
     context: &Context,
     (format, samples, is_blended): (vk::Format, vk::SampleCountFlags, bool),
-    [width, height]: [u32; 2],
+    kind: vk::ImageType,
+    vk::Extent3D { width, height, depth }: vk::Extent3D,
 ) -> Result<(), String> {
-    let (kind, tiling) = (vk::ImageType::TYPE_2D, vk::ImageTiling::OPTIMAL);
+    let tiling = vk::ImageTiling::OPTIMAL;
     let (instance, physical) = (&context.instance, context.physical);
     let none = vk::ImageCreateFlags::empty();
     // SAFETY: the device is one of the instance.
     let (properties, features) = unsafe {
-        let properties =
-            instance.get_physical_device_image_format_properties(physical, format, kind, tiling, usage(format), none);
+        let properties = instance.get_physical_device_image_format_properties(
+            physical,
+            format,
+            kind,
+            tiling,
+            usage(format, kind),
+            none,
+        );
         (properties, instance.get_physical_device_format_properties(physical, format).optimal_tiling_features)
     };
     let name = format.as_raw();
@@ -244,7 +281,7 @@ fn usable(
         return Err(format!("the device does not blend VkFormat {name}"));
     }
     let most = properties.max_extent;
-    if width > most.width || height > most.height {
+    if width > most.width || height > most.height || depth > most.depth {
         return Err(format!(
             "{width} × {height} pixels are more than the device allows, {} × {}: draw a smaller frame",
             most.width, most.height

@@ -18,6 +18,9 @@ pub fn formats(name: &str) -> Result<&'static [vk::Format], Error> {
     })
 }
 
+/// The format of textures of a description.
+pub const TEXEL_FORMATS: [vk::Format; 1] = [vk::Format::R32G32B32A32_SFLOAT];
+
 /// Returns what a format stores.
 pub fn aspects(format: vk::Format) -> vk::ImageAspectFlags {
     match format {

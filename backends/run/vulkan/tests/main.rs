@@ -11,6 +11,7 @@ mod facing;
 #[path = "../../../../tests/oracle/hosts.rs"]
 mod hosts;
 mod interlock;
+mod lookups;
 mod misuse;
 mod peeling;
 mod pixels;

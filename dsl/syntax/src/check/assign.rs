@@ -219,6 +219,15 @@ impl Checker<'_, '_, '_> {
             Kind::Attribute(base, _) | Kind::Element(base, _) => self.require_mutable(base, whole),
             Kind::Components(base, names) if names.len() == 1 => self.require_mutable(base, whole),
             Kind::Variable(id) => self.require_mutable_variable(*id, whole),
+            Kind::Uniform(name) if matches!(part.ty, Type::Texture(_)) => {
+                let message = format!("cannot assign to `{name}`: textures and images are read-only");
+                self.report.error(
+                    codes::NOT_MUTABLE,
+                    whole,
+                    message,
+                    "compute an image with `image name |fragments| …`",
+                );
+            }
             Kind::Uniform(name) => {
                 let message = format!("cannot assign to the uniform `{name}`");
                 let help = format!("copy it: `let mut {name} = …;`");

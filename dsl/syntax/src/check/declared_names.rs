@@ -6,7 +6,7 @@
 use fragbuf_model::nearest_name;
 
 use super::checker::Checker;
-use crate::types::Type;
+use crate::types::{Shape, Type};
 use crate::unknown_name;
 
 /// The place of an unknown name.
@@ -29,7 +29,13 @@ impl Checker<'_, '_, '_> {
             return format!("it is an attribute: {}", self.write_attribute(name));
         }
         if has(uniforms) {
-            return format!("it is a uniform: {}", self.write_uniform(name));
+            let ty = uniforms.iter().find(|(other, _)| other == name).map(|(_, ty)| *ty);
+            let what = match ty {
+                Some(Type::Texture(Shape::Image)) => "an image",
+                Some(Type::Texture(_)) => "a texture",
+                _ => "a uniform",
+            };
+            return format!("it is {what}: {}", self.write_uniform(name));
         }
         if let (Place::Value, Some(help)) = (place, self.help_for_parameter(name)) {
             return help;

@@ -68,7 +68,8 @@ impl DeclarationBlock {
         self.foreign(word).and_then(|foreign| foreign.own).unwrap_or_else(|| self.usual_type().to_owned())
     }
 
-    fn usual_type(self) -> &'static str {
+    /// Returns a type for a declaration without one.
+    pub(super) fn usual_type(self) -> &'static str {
         if self == DeclarationBlock::Texture { "2d" } else { "f32" }
     }
 

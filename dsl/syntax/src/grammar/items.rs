@@ -30,7 +30,7 @@ const SYNONYMS: &[(&[&str], &str)] = &[
     (&["parameters", "params", "constants", "cbuffer"], "write `uniform { cut: f32 }`"),
     (&["textures", "sampler", "sampler2D", "tex"], "write `texture { lut: 2d }`"),
     (&["pass", "step", "buffer_pass"], "an image that the effect reads is `image name |fragments| { … }`"),
-    (&["pair", "stream", "gap"], "an effect of two neighbouring fragments is `between |front, back, gap| { … }`"),
+    (&["pair", "gap"], "an effect of two neighbouring fragments is `between |front, back, gap| { … }`"),
     (&["function", "def", "func", "void"], "write `fn name(x: f32) -> f32 { … }`"),
 ];
 
@@ -159,11 +159,11 @@ fn without_braces(keyword: &str, block: DeclarationBlock, cursor: &mut Cursor, r
     let span = cursor.source_span(report);
     let first = cursor.take_identifier();
     cursor.take_punct(':');
-    let second = cursor.take_identifier();
+    let second = cursor.take_word();
     let declaration = match (first, second) {
-        (Some(first), Some(second)) => block.declaration(&first.to_string(), &second.to_string()),
-        (Some(name), None) => format!("{name}: f32"),
-        _ => "cut: f32".to_owned(),
+        (Some(first), Some(second)) => block.declaration(&first.to_string(), &second),
+        (Some(name), None) => format!("{name}: {}", block.usual_type()),
+        _ => format!("cut: {}", block.usual_type()),
     };
     let depth = match block {
         DeclarationBlock::Fragment if !declaration.starts_with("depth:") => ", depth: f32",
@@ -219,7 +219,7 @@ fn image(items: &mut Items, cursor: &mut Cursor, report: &mut Report) -> Result<
     let name = names::declared(&names::written(&name, report), "image", report);
     let role = Role::Image(name.value.clone());
     let function = closures::closure(cursor, role, &mut items.function_tokens, report)?;
-    items.add_image(name, function, report);
+    items.add_image(name, function);
     Ok(())
 }
 

@@ -54,7 +54,9 @@ pub(super) fn starts_item(cursor: &Cursor) -> bool {
                 Some(TokenTree::Ident(all)) => all == "all",
                 other => matches!(other, Some(TokenTree::Literal(_))),
             },
-            "fragment" | "uniform" | "texture" => matches!(second, Some(TokenTree::Group(_))),
+            "fragment" | "uniform" => matches!(second, Some(TokenTree::Group(_))),
+            // `texture(…)` is a call of another language.
+            "texture" => matches!(second, Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Brace),
             "image" => matches!(second, Some(TokenTree::Ident(_))),
             "resolve" | "between" => is_punct(second, '|') || is_single_colon(second),
             _ => is_single_colon(second),

@@ -1,7 +1,7 @@
 //! Writes the `resources` of a manifest: buffers and textures, their sizes and how they begin.
 
 use fragbuf_codegen::PlannedResource;
-use fragbuf_templates::vocabulary::{Element, Init, Lifetime, TextureFormat};
+use fragbuf_templates::vocabulary::{Element, Init, Lifetime, TextureDimension, TextureFormat};
 use serde_json::{Value, json};
 
 use super::Context;
@@ -46,7 +46,7 @@ fn resource(context: &Context<'_>, planned: &PlannedResource) -> Value {
     });
     match resource.element {
         Element::Texture(format) => value["texture"] = texture(planned, format),
-        Element::Texels(dimension) => value["view_dimension"] = dimension.keyword().into(),
+        Element::Texels(dimension) => value["texture"] = described(context, planned, dimension),
         _ => {
             let least = least_bytes(context, planned.binding);
             value["least_bytes"] = least.into();
@@ -80,6 +80,21 @@ fn texture(planned: &PlannedResource, format: TextureFormat) -> Value {
         "samples": planned.sample_count().map_or("1", |count| &count.formula().0),
         "clear": clear,
         "word": planned.part.as_ref().map(|part| &part.field),
+    })
+}
+
+/// Returns what a follower must know of a texture of the description: its name there, and its dimension. It has any size and any format of
+/// floats; `format` is one that every API has.
+fn described(context: &Context<'_>, planned: &PlannedResource, dimension: TextureDimension) -> Value {
+    let textures = &context.plan.variant.textures;
+    let name = textures.iter().find(|texture| texture.resource() == planned.resource.name);
+    json!({
+        "format": "rgba32float",
+        "samples": "1",
+        "clear": null,
+        "word": null,
+        "described": name.map(|texture| &texture.name.value),
+        "view_dimension": dimension.keyword(),
     })
 }
 

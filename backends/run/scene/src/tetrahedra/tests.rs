@@ -1,4 +1,5 @@
 //! Faces, vertices and gradients of two tetrahedra that share a face.
+#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
 
 use super::{Face, faces, gradients, vertices, volume};
 use crate::Limits;

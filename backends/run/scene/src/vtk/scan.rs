@@ -10,12 +10,14 @@ use crate::text::{quoted, quoted_bytes};
 pub(super) struct Scan<'a> {
     bytes: &'a [u8],
     at: usize,
+    /// The line of the next byte.
+    line: usize,
     pub(super) is_binary: bool,
 }
 
 impl<'a> Scan<'a> {
     pub(super) fn new(bytes: &'a [u8]) -> Self {
-        Scan { bytes, at: 0, is_binary: false }
+        Scan { bytes, at: 0, line: 1, is_binary: false }
     }
 
     fn rest(&self) -> &'a [u8] {
@@ -27,11 +29,11 @@ impl<'a> Scan<'a> {
         if self.is_binary {
             return FilePosition::Byte(self.at);
         }
-        let space = self.rest().iter().take_while(|byte| byte.is_ascii_whitespace()).count();
+        let space = self.rest().iter().take_while(|byte| byte.is_ascii_whitespace());
+        let (length, lines) =
+            space.fold((0, 0), |(length, lines), byte| (length + 1, lines + usize::from(*byte == b'\n')));
         // At the end of the file, the last line.
-        let at = if self.at + space == self.bytes.len() { self.at } else { self.at + space };
-        let before = self.bytes.get(..at).unwrap_or_default();
-        FilePosition::Line(1 + before.iter().filter(|byte| **byte == b'\n').count())
+        FilePosition::Line(if self.at + length == self.bytes.len() { self.line } else { self.line + lines })
     }
 
     pub(super) fn error(&self, message: impl Into<String>) -> FileError {
@@ -41,13 +43,17 @@ impl<'a> Scan<'a> {
     /// Returns the rest of the line as text, and goes to the next line.
     pub(super) fn line(&mut self) -> String {
         let line = self.rest().split(|byte| *byte == b'\n').next().unwrap_or_default();
+        self.line += usize::from(self.at + line.len() < self.bytes.len());
         self.at = (self.at + line.len() + 1).min(self.bytes.len());
         String::from_utf8_lossy(line.get(..1024).unwrap_or(line)).trim().to_owned()
     }
 
     /// Returns the next word; `None` at the end of the file.
     pub(super) fn word(&mut self) -> Option<&'a [u8]> {
-        self.at += self.rest().iter().take_while(|byte| byte.is_ascii_whitespace()).count();
+        for byte in self.rest().iter().take_while(|byte| byte.is_ascii_whitespace()) {
+            self.at += 1;
+            self.line += usize::from(*byte == b'\n');
+        }
         let length = self.rest().iter().take_while(|byte| !byte.is_ascii_whitespace()).count();
         let word = self.rest().get(..length).filter(|word| !word.is_empty());
         self.at += length;

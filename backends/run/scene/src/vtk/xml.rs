@@ -18,9 +18,15 @@ const NODE: u64 = 160;
 const MAX_NODES: u32 = 1 << 20;
 const MAX_FIELDS: usize = 4096;
 
+/// The greatest number of quotation marks of an element, two per attribute, and of declarations of namespaces: parsing compares each with
+/// the others.
+const MAX_QUOTES: usize = 256;
+const MAX_NAMESPACES: usize = 16;
+
 /// A file without the data behind its document.
 struct Xml<'a> {
-    document: &'a Document<'a>,
+    /// The offsets of line ends.
+    lines: &'a [usize],
     encoding: Encoding,
     /// The data behind the document, and whether it is Base64.
     appended: &'a [u8],
@@ -39,6 +45,10 @@ pub(super) fn read(
     let marks = text.iter().filter(|byte| b"<\"'".contains(byte)).count() as u64;
     // Its texts are copied if they have references to characters.
     let _held = budget.hold(1, marks.saturating_mul(NODE) + 3 * text.len() as u64, "the document")?;
+    check(text)?;
+    let _lines =
+        budget.hold(text.iter().filter(|byte| **byte == b'\n').count() as u64, 8, "the lines of the document")?;
+    let lines: Vec<usize> = (0..text.len()).filter(|at| text.get(*at) == Some(&b'\n')).collect();
     let mut text = String::from_utf8(text.to_vec()).map_err(|error| {
         let line = 1 + text.iter().take(error.utf8_error().valid_up_to()).filter(|byte| **byte == b'\n').count();
         FileError::line(line, "the text is not UTF-8")
@@ -51,7 +61,7 @@ pub(super) fn read(
         FileError::line(error.pos().row as usize, format!("invalid XML: {}", foreign_message(&error)))
     })?;
     let root = document.root_element();
-    let line = |node: Node<'_, '_>| line(&document, node);
+    let line = |node: Node<'_, '_>| line(&lines, node);
     let grid = root.children().find(|node| node.has_tag_name("UnstructuredGrid"));
     let Some(grid) = grid.filter(|_| root.has_tag_name("VTKFile")) else {
         let kind = root.attribute("type").unwrap_or_else(|| root.tag_name().name());
@@ -61,7 +71,7 @@ pub(super) fn read(
     let element = root.children().find(|node| node.has_tag_name("AppendedData"));
     let is_base64 = element.and_then(|node| node.attribute("encoding")) != Some("raw");
     let encoding = encoding(root).map_err(|message| FileError::line(line(root), message))?;
-    let xml = Xml { document: &document, encoding, appended: appended.unwrap_or_default(), is_base64, budget };
+    let xml = Xml { lines: &lines, encoding, appended: appended.unwrap_or_default(), is_base64, budget };
     let mut whole = Grid::default();
     for piece in grid.children().filter(|node| node.has_tag_name("Piece")) {
         xml.piece(piece, wanted, &mut whole)?;
@@ -85,8 +95,29 @@ fn split(bytes: &[u8]) -> (&[u8], Option<&[u8]>) {
     data.map_or((bytes, None), |data| (bytes.get(..end).unwrap_or(bytes), Some(data)))
 }
 
-fn line(document: &Document<'_>, node: Node<'_, '_>) -> usize {
-    document.text_pos_at(node.range().start).row as usize
+fn line(lines: &[usize], node: Node<'_, '_>) -> usize {
+    1 + lines.partition_point(|end| *end < node.range().start)
+}
+
+/// Rejects documents that take too long to parse.
+fn check(text: &[u8]) -> Result<(), FileError> {
+    let (mut quotes, mut line, mut namespaces) = (0, 1, 0);
+    for (at, byte) in text.iter().enumerate() {
+        match byte {
+            b'\n' => line += 1,
+            b'<' => quotes = 0,
+            b'"' | b'\'' => quotes += 1,
+            b'x' if text.get(at..).is_some_and(|rest| rest.starts_with(b"xmlns")) => namespaces += 1,
+            _ => {}
+        }
+        if quotes > MAX_QUOTES {
+            return Err(FileError::line(line, format!("an element with more than {} attributes", MAX_QUOTES / 2)));
+        }
+        if namespaces > MAX_NAMESPACES {
+            return Err(FileError::line(line, format!("more than {MAX_NAMESPACES} namespaces")));
+        }
+    }
+    Ok(())
 }
 
 fn encoding(root: Node<'_, '_>) -> Result<Encoding, String> {
@@ -104,7 +135,7 @@ fn encoding(root: Node<'_, '_>) -> Result<Encoding, String> {
 
 impl Xml<'_> {
     fn error(&self, node: Node<'_, '_>, message: impl Into<String>) -> FileError {
-        FileError::line(line(self.document, node), message)
+        FileError::line(line(self.lines, node), message)
     }
 
     /// Adds a piece to the grid.
@@ -117,7 +148,7 @@ impl Xml<'_> {
         };
         let (points, cells) = (count("NumberOfPoints")?, count("NumberOfCells")?);
         let (first_point, first_end) = ((grid.points.len() / 3) as f64, grid.connectivity.len() as f64);
-        let position = |node: Node<'_, '_>| FilePosition::Line(line(self.document, node));
+        let position = |node: Node<'_, '_>| FilePosition::Line(line(self.lines, node));
         let element = self.child(piece, "Points")?;
         grid.points_at.get_or_insert(position(element));
         let array = element.children().find(|node| node.has_tag_name("DataArray"));
@@ -166,7 +197,7 @@ impl Xml<'_> {
                     return Err(self.error(array, format!("more than {MAX_FIELDS} arrays")));
                 }
                 if index == grid.fields.len() {
-                    let position = FilePosition::Line(line(self.document, array));
+                    let position = FilePosition::Line(line(self.lines, array));
                     grid.fields.push(Field { name, components, is_of_cells, values: Vec::new(), position });
                 }
                 let Some(field) = grid.fields.get_mut(index) else { continue };

@@ -12,6 +12,9 @@ use super::numbers::Kind;
 use crate::limits::Budget;
 use crate::text::quoted_bytes;
 
+/// The bytes by which compression may lengthen a block, with a margin.
+const GROWTH: u64 = 1024;
+
 /// How a file stores binary data.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Encoding {
@@ -108,19 +111,21 @@ fn decompressed(data: Data<'_>, length: usize, encoding: Encoding, budget: &Budg
     let size = encoding.header.size();
     let begin = first(data, &[size], budget)?;
     let blocks = whole(&begin, encoding).first().copied().unwrap_or_default();
-    // A compressed block has a byte or more.
     let available = match data {
         Data::Words(text) => text.len(),
         Data::Base64(bytes) | Data::Bytes(bytes) => bytes.len(),
     };
-    if blocks > available as u64 {
-        return Err(format!("{blocks} blocks are declared, and {available} bytes follow").into());
+    // A block has a byte or more, before and after.
+    if blocks > (available as u64).min(length as u64) {
+        return Err(format!("{blocks} blocks are declared for {length} bytes, and {available} bytes follow").into());
     }
     let header_length = size * (3 + blocks as usize);
     let header = first(data, &[header_length], budget)?;
     let sizes: Vec<u64> = header.get(3 * size..header_length).map(|sizes| whole(sizes, encoding)).unwrap_or_default();
     let total = sizes.iter().fold(0_u64, |sum, size| sum.saturating_add(*size));
-    if sizes.len() as u64 != blocks || total > available as u64 {
+    // What cannot be compressed grows by some bytes per block.
+    let most = (available as u64).min(2 * length as u64 + GROWTH * blocks);
+    if sizes.len() as u64 != blocks || total > most {
         return Err(format!("compressed data of {total} bytes in {blocks} blocks, and {available} bytes follow").into());
     }
     let all = first(data, &[header_length, total as usize], budget)?;
