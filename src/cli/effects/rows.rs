@@ -131,7 +131,7 @@ pub(crate) const EFFECTS: &[Effect] = &[
         ]
     ),
     row!(
-        "complexity",
+        "depth_complexity",
         "the number of fragments of a pixel as a heat map",
         "D13 §4",
         reads: None,

@@ -139,7 +139,7 @@ pub const EFFECTS: &[Effect] = &[
         ("is_before || is_behind", "is_before"),
         colors::coplanarity
     ),
-    effect!("complexity", &[("most", Number::F32(colors::MOST))], open over ALL, ("0.95", "0.9"), colors::complexity),
+    effect!("depth_complexity", &[("most", Number::F32(colors::MOST))], open over ALL, ("0.95", "0.9"), colors::complexity),
     effect!(
         "volume",
         &[("density", Number::F32(volumes::DENSITY))],
