@@ -1,7 +1,8 @@
 //! The guide. Read it in this order; each chapter can also be read alone.
 //!
 //! 1. [`describe`]: payload, criterion, constraints, choices, effect; in a file, in Rust, by a program.
-//! 2. [`axes`]: every choice with its values, and [`language`]: the reference of the closure language.
+//! 2. [`axes`]: every choice with its values, [`language`]: the reference of the closure language, and [`effects`]: descriptions of the papers'
+//!    effects, and how to write your own.
 //! 3. [`generate`]: files for engines, build scripts, tiers.
 //! 4. [`manifest`]: how an engine in any language runs a frame.
 //! 5. [`run`]: images and statistics from the command line, [`playground`]: a page that shows both while you type, [`site`]: static pages
@@ -23,6 +24,8 @@ pub mod describe {}
 pub mod language {}
 #[doc = include_str!("guide/axes.md")]
 pub mod axes {}
+#[doc = include_str!("guide/effects.md")]
+pub mod effects {}
 #[doc = include_str!("guide/generate.md")]
 pub mod generate {}
 #[doc = include_str!("guide/manifest.md")]

@@ -101,7 +101,7 @@ fn attributes_that_are_missing_are_errors() {
     let text = std::fs::read_to_string(HEAT[0]).unwrap();
     std::fs::write(&description, text.replace("heat", "haet")).unwrap();
     let haet = description.to_str().unwrap();
-    let every = "color or colour (rgba8, rgba16, vec4, vec3), alpha (f32), normal (octahedral, vec3), position (vec3), id or object (u32), depth (f32), and front (u32)";
+    let every = "color or colour (rgba8, rgba16, vec4, vec3), alpha (f32), normal (octahedral, vec3), position (vec3), edges (vec3), id or object (u32), depth (f32), and front (u32)";
     let advice = "`--attribute haet=0.5` sets a value for every vertex";
     assert_eq!(
         refused("render", &[haet, "--scene", "examples/heat.ply"]),

@@ -8,6 +8,9 @@ mod chromium;
 #[path = "oracle/cpu_image.rs"]
 #[allow(dead_code, reason = "these tests render with attributes of their own")]
 mod cpu_image;
+mod effect_jobs;
+#[path = "oracle/effects/mod.rs"]
+pub mod effects;
 mod jobs;
 #[path = "oracle/lookups.rs"]
 mod lookups;
@@ -94,8 +97,6 @@ fn problem(run: &Value, expected: &Expected) -> Option<String> {
     let images = run["images"].as_array().unwrap();
     assert_eq!(images.len(), expected.images.len());
     for (number, (image, expected)) in images.iter().zip(&expected.images).enumerate() {
-        let channel = |value: &Value| value.as_f64().unwrap() as f32;
-        let pixel = |pixel: &Value| [channel(&pixel[0]), channel(&pixel[1]), channel(&pixel[2]), 1.0];
         let seen: Vec<[f32; 4]> = image.as_array().unwrap().iter().map(pixel).collect();
         if let Some(difference) = first_difference(&seen, expected) {
             return Some(format!("scene {number}: {difference}"));
@@ -113,6 +114,12 @@ fn problem(run: &Value, expected: &Expected) -> Option<String> {
     }
     let slices = run["slices"].as_u64().unwrap();
     (slices != expected.slices).then(|| format!("{slices} slices, not {}", expected.slices))
+}
+
+/// Returns the colour of a pixel of a result.
+fn pixel(pixel: &Value) -> [f32; 4] {
+    let channel = |at: usize| pixel[at].as_f64().unwrap() as f32;
+    [channel(0), channel(1), channel(2), 1.0]
 }
 
 /// Returns what is wrong with the times of a frame: each pass that ran has one, finite and not negative.
@@ -141,6 +148,24 @@ fn every_technique_on_dawn() {
     let [drawn, every] = ["drawn", "every"].map(count);
     assert!(0 < drawn && drawn < every, "{drawn} of {every} objects");
     println!("{drawn} of {every} objects are drawn");
+}
+
+/// The effects of `examples/effects`: the image is that of the reference, which no device draws.
+#[test]
+fn every_effect_on_dawn() {
+    let folder = folder("effects");
+    let drawn = effect_jobs::write(&folder);
+    node("dawn.mjs", &[&folder]);
+    let results: Value = serde_json::from_slice(&std::fs::read(folder.join("results.json")).unwrap()).unwrap();
+    assert_eq!(results["uncaptured"], serde_json::json!([]), "errors outside of error scopes");
+    for (effect, what, expected) in &drawn {
+        let result = &results["results"][what];
+        let image = &result["runs"][0]["images"][0];
+        let image = image.as_array().unwrap_or_else(|| panic!("{what}: {}", result["error"]));
+        let seen: Vec<[f32; 4]> = image.iter().map(pixel).collect();
+        effect.assert_image(what, &seen, expected);
+    }
+    assert!(drawn.len() >= 2 * effects::EFFECTS.len(), "{} images", drawn.len());
 }
 
 #[test]

@@ -25,6 +25,7 @@ mod command_line;
 mod devices;
 mod diagnostics;
 mod editors;
+mod effects;
 mod examples;
 #[cfg(feature = "figures")]
 mod figures;

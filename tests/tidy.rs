@@ -88,6 +88,7 @@ fn no_code_compares_a_key() {
         ("early", "a field of a depth test in the manifest"),
         ("interlock", "a feature in the manifest"),
         ("layer", "a prefix of generated names"),
+        ("described", "a field of a texture in the manifest"),
     ];
     let registry = Registry::builtin();
     let chosen = |axis: &str| registry.axis(axis).is_some_and(|axis| axis.chosen);

@@ -10,6 +10,7 @@ use fragbuf_scene::{AttributeRequest, AvailableAttribute, FilePosition, Object, 
 
 use super::memory::Budget;
 use super::output::Failure;
+use super::scene_data::{SCENE_DATA, SceneData, SceneVertex, bits, scene_data, scene_row};
 
 /// The words of the vertices, three indices per triangle, and the range of indices of each object; none if the scene has an order of its own.
 pub(crate) struct Geometry {
@@ -23,79 +24,6 @@ pub(crate) struct Geometry {
     pub(crate) memory: Budget,
 }
 
-/// A function that returns the words of one attribute of a vertex.
-type ReadWords = fn(vertex: &SceneVertex<'_>) -> [u32; 4];
-
-/// A vertex of a scene.
-struct SceneVertex<'a> {
-    scene: &'a Scene,
-    object: &'a Object,
-    /// The number of its object.
-    id: u32,
-    /// Its index in the object.
-    index: usize,
-}
-
-/// Data of every scene.
-struct SceneData {
-    names: &'static [&'static str],
-    /// The formats that it can be read as.
-    formats: &'static [Format],
-    read: ReadWords,
-    /// Whether an attribute of the model with this name has precedence.
-    is_default: bool,
-    /// Whether light changes it.
-    #[cfg_attr(
-        not(feature = "playground"),
-        allow(dead_code, reason = "only the page of the playground lights vertices itself")
-    )]
-    is_color: bool,
-}
-
-const SCENE_DATA: [SceneData; 5] = [
-    SceneData {
-        names: &["color", "colour"],
-        formats: &[Format::Rgba8, Format::Rgba16, Format::Vec4, Format::Vec3],
-        read: |vertex| bits(&vertex.object.colors, vertex.index),
-        is_default: false,
-        is_color: true,
-    },
-    SceneData {
-        names: &["alpha"],
-        formats: &[Format::F32],
-        read: |vertex| [bits(&vertex.object.colors, vertex.index)[3], 0, 0, 0],
-        is_default: false,
-        is_color: false,
-    },
-    SceneData {
-        names: &["normal"],
-        formats: &[Format::Octahedral, Format::Vec3],
-        read: |vertex| bits(&vertex.object.normals, vertex.index),
-        is_default: false,
-        is_color: false,
-    },
-    SceneData {
-        names: &["position"],
-        formats: &[Format::Vec3],
-        read: |vertex| model_position(vertex),
-        is_default: true,
-        is_color: false,
-    },
-    SceneData {
-        names: &["id", "object"],
-        formats: &[Format::U32],
-        read: |vertex| [vertex.id, 0, 0, 0],
-        is_default: true,
-        is_color: false,
-    },
-];
-
-/// Returns the data of every scene with this name.
-fn scene_row(name: &str) -> Option<&'static SceneData> {
-    static ROWS: [SceneData; 5] = SCENE_DATA;
-    ROWS.iter().find(|row| row.names.contains(&name))
-}
-
 /// The attributes that the rasteriser computes, with their formats.
 const RASTERISED: &str = "depth (f32), and front (u32)";
 
@@ -105,7 +33,7 @@ const MAX_LISTED: usize = 12;
 /// Where the words of an attribute come from.
 enum Source {
     /// The data of every scene.
-    Scene(ReadWords),
+    Scene(&'static SceneData),
     /// An attribute of the model, by its index in the scene.
     Model(usize),
     /// A value of the command line, for every vertex.
@@ -218,6 +146,8 @@ pub(crate) fn geometry(
         Ok((words(format), source(name, format, scene, given)?))
     });
     let columns: Vec<(usize, Source)> = columns.collect::<Result<_, Failure>>()?;
+    let (memory, own_corners) = own_corners(scene, &columns, memory)?;
+    let scene = own_corners.as_ref().unwrap_or(scene);
     let stride = 3 + columns.iter().map(|(words, _)| words).sum::<usize>();
     let words = stride.saturating_mul(scene.vertices());
     let bytes = (words as u64).saturating_add(3 * scene.triangles() as u64).saturating_mul(4);
@@ -235,7 +165,7 @@ pub(crate) fn geometry(
             vertices.extend(bits(&object.positions, vertex).iter().take(3));
             for (words, source) in &columns {
                 let values = match source {
-                    Source::Scene(read) => read(&SceneVertex { scene, object, id, index: vertex }),
+                    Source::Scene(row) => (row.read)(&SceneVertex { scene, object, id, index: vertex }),
                     Source::Model(index) => model_words(object, *index, (*words, vertex)),
                     Source::Value(value) => *value,
                 };
@@ -287,7 +217,7 @@ fn source(name: &str, format: Format, scene: &Scene, given: &[(String, String)])
     let request = request(name, format);
     let index = scene.attributes.iter().position(|attribute| *attribute == request);
     if let Some(row) = scene_row(name).filter(|row| row.formats.contains(&format) && index.is_none()) {
-        return Ok(Source::Scene(row.read));
+        return Ok(Source::Scene(row));
     }
     index.map(Source::Model).ok_or_else(|| {
         Failure::Input(format!(
@@ -303,15 +233,6 @@ fn source(name: &str, format: Format, scene: &Scene, given: &[(String, String)])
 fn advice(AttributeRequest { name, components, is_integer, .. }: &AttributeRequest) -> String {
     let value = vec![if *is_integer { "1" } else { "0.5" }; *components].join(",");
     format!("`--attribute {name}={value}` sets a value for every vertex")
-}
-
-/// Returns the names and formats of the data of every scene.
-fn scene_data() -> String {
-    let one = |SceneData { names, formats, .. }: &SceneData| {
-        let formats: Vec<&str> = formats.iter().map(|format| format.keyword()).collect();
-        format!("{} ({})", names.join(" or "), formats.join(", "))
-    };
-    SCENE_DATA.iter().map(one).collect::<Vec<String>>().join(", ")
 }
 
 /// Returns the attribute of a model for one of a description.
@@ -371,15 +292,11 @@ fn model_words(object: &Object, index: usize, (count, vertex): (usize, usize)) -
     std::array::from_fn(|index| words.and_then(|words| words.get(index)).copied().unwrap_or(0))
 }
 
-/// Returns the words of the position in the coordinates of the model. Far from their zero it is rounded to `f32`.
-fn model_position(SceneVertex { scene, object, index, .. }: &SceneVertex<'_>) -> [u32; 4] {
-    let position = object.positions.get(*index).copied().unwrap_or_default();
-    let [x, y, z] = scene.placement.model_position(position).map(f32::to_bits);
-    [x, y, z, 0]
-}
-
-/// Returns the bits of a vertex's values, padded with 0.
-fn bits<const N: usize>(values: &[[f32; N]], vertex: usize) -> [u32; 4] {
-    let values = values.get(vertex);
-    std::array::from_fn(|index| values.and_then(|values| values.get(index)).map_or(0, |value| value.to_bits()))
+/// Returns the scene with vertices of its own for each triangle if an attribute needs them. Its memory is taken from `memory`.
+fn own_corners(scene: &Scene, columns: &[(usize, Source)], memory: Budget) -> Result<(Budget, Option<Scene>), Failure> {
+    if !columns.iter().any(|(_, source)| matches!(source, Source::Scene(row) if row.is_of_corners)) {
+        return Ok((memory, None));
+    }
+    let memory = memory.without(scene.bytes_with_own_corners(), "the corners of the triangles")?;
+    Ok((memory, Some(scene.with_own_corners())))
 }

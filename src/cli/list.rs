@@ -27,6 +27,10 @@ pub(crate) struct List {
     /// Print the axes with their values and options as Markdown, the default value of each axis first
     #[arg(long, conflicts_with_all = ["json", "wide", "markdown", "table_1"])]
     axes: bool,
+    /// Print the effects that `render --effect` draws, with their arguments, as Markdown
+    #[cfg(feature = "pictures")]
+    #[arg(long, conflicts_with_all = ["json", "wide", "markdown", "table_1", "axes"])]
+    effects: bool,
 }
 
 impl List {
@@ -34,6 +38,10 @@ impl List {
         let registry = Registry::builtin();
         if self.table_1 {
             return output::print(&super::table_1::table(&registry)?);
+        }
+        #[cfg(feature = "pictures")]
+        if self.effects {
+            return output::print(&super::effects::markdown());
         }
         if self.axes {
             return output::print(&axes(&registry));

@@ -24,6 +24,8 @@ mod device;
 #[cfg(feature = "pictures")]
 mod devices;
 mod earlier;
+#[cfg(feature = "pictures")]
+mod effects;
 mod explain;
 #[cfg(feature = "figures")]
 mod figure;
@@ -57,6 +59,8 @@ mod render;
 mod rendered_texture;
 #[cfg(feature = "pictures")]
 mod rendering;
+#[cfg(feature = "pictures")]
+mod scene_data;
 mod show;
 #[cfg(feature = "playground")]
 mod site;
@@ -73,6 +77,7 @@ mod usage;
 mod view;
 mod watch;
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
@@ -138,7 +143,10 @@ enum Command {
 }
 
 pub(crate) fn run() -> ExitCode {
-    let arguments = Arguments::try_parse().unwrap_or_else(|error| {
+    let words = std::env::args_os().collect();
+    #[cfg(feature = "pictures")]
+    let words = effects::with_arguments(words);
+    let arguments = Arguments::try_parse_from::<Vec<OsString>, _>(words).unwrap_or_else(|error| {
         let given: Vec<String> = std::env::args().collect();
         usage::explained(error, &given, &Arguments::command()).exit()
     });

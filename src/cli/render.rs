@@ -14,6 +14,7 @@ use super::assignment::{assignment, uniform};
 use super::attributes::{check_sources, model_attributes};
 #[cfg(feature = "playground")]
 use super::device::DeviceRequest;
+use super::effects::{self, Effect, MissingFragments};
 use super::input::Input;
 use super::output::{self, Failure};
 use super::picture;
@@ -26,10 +27,14 @@ use super::view::{SceneView, View, scenes};
 use super::watch::watch;
 
 #[derive(clap::Args)]
-#[command(after_help = scenes())]
+#[command(after_help = format!("{}\n{}", scenes(), effects::help()))]
 pub(crate) struct Render {
     /// Technique key, .fragbuf file, or `-` for a description on stdin
-    description: String,
+    #[arg(required_unless_present = "effect", conflicts_with = "effect")]
+    description: Option<String>,
+    /// Draw an effect with its description and its default arguments, which others replace. `list --effects` prints them
+    #[arg(long, value_name = "NAME", value_parser = effects::parse)]
+    effect: Option<&'static Effect>,
     /// Change the description: axis=value, axis.option=value or k=8
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
     set: Vec<(String, String)>,
@@ -64,8 +69,8 @@ impl Render {
         if picture::is_stdout(&self.view.out) {
             return Err(Failure::Usage("`--watch` writes many images: give a file to `--out`".to_owned()));
         }
-        let is_file = Input::is_file(&self.description, &Registry::builtin());
-        let description = is_file.then(|| PathBuf::from(&self.description));
+        let is_file = self.effect.is_none() && Input::is_file(self.description(), &Registry::builtin());
+        let description = is_file.then(|| PathBuf::from(self.description()));
         let files = description.into_iter().chain(self.view.files()).collect();
         watch(files, "give a .fragbuf file, or a model to `--scene`", |files| self.render(files))
     }
@@ -112,11 +117,17 @@ impl Render {
         layer.into_iter().flatten().chain(self.set.iter().cloned()).collect()
     }
 
+    /// Returns the description as given, or the path of the effect's.
+    fn description(&self) -> &str {
+        let path = self.effect.map(|effect| effect.path);
+        path.or(self.description.as_deref()).unwrap_or_default()
+    }
+
     /// Reads the description.
     fn input(&self, registry: &Registry) -> Result<Input, Failure> {
-        match self.text {
-            Some(text) => Ok(Input::text(&self.description, text)),
-            None => Input::read(&self.description, registry),
+        match self.text.or(self.effect.map(|effect| effect.text)) {
+            Some(text) => Ok(Input::text(self.description(), text)),
+            None => Input::read(self.description(), registry),
         }
     }
 
@@ -129,7 +140,12 @@ impl Render {
             Some(image) => image.append(&mut shown(&result, view))?,
             None => picture::write(&view.out, view.size, &mut shown(&result, view), view.linear)?,
         }
-        let statistics = statistics(&self.description, &result, &selection, &scene);
+        let mut statistics = statistics(self.description(), &result, &selection, &scene);
+        if let Some(effect) = self.effect {
+            let missing = MissingFragments::of(effect, &result);
+            missing.warn(self.description());
+            statistics["effect"] = missing.json();
+        }
         sequence.lagged = result.stats.lagged;
         Ok(statistics)
     }
@@ -153,7 +169,7 @@ impl Render {
         uniforms::check(&self.uniforms, &variant)?;
         check_names(&[&variant], &self.view.textures)?;
         if !view.is_later_frame {
-            uniforms::warn_unset(&self.description, &self.uniforms, &variant);
+            uniforms::warn_unset(self.description(), &self.uniforms, &variant);
         }
         let (scene, opaque) = view.scene_views(&model_attributes(&[&variant], &view.attributes)?)?;
         files.extend(view.importance.clone());
@@ -161,10 +177,10 @@ impl Render {
         check_sources(&[&variant], &scene.scene, &view.attributes)?;
         uniforms::values(&self.uniforms, &variant, &scene)?;
         let request = RenderRequest {
-            description: &self.description,
+            description: self.description(),
             set: &set,
             uniforms: &self.uniforms,
-            count_all: view.json || self.animation.is_given(),
+            count_all: view.json || self.animation.is_given() || self.effect.is_some() && variant.keep.is_some(),
             opaque: opaque.as_ref(),
             held: 0,
             lagged,

@@ -90,6 +90,11 @@ pub(crate) struct FragmentCounts {
 }
 
 impl FragmentCounts {
+    /// Returns the fragments that are not kept although they met the constraints.
+    pub(crate) fn rejected(&self) -> u64 {
+        self.generated - self.stored
+    }
+
     /// Returns `None` if some events were not counted: a fixed-function test counts nothing.
     pub(crate) fn of(result: &RenderResult) -> Option<Self> {
         let is_counted =

@@ -3,6 +3,7 @@
 
 pub mod continued;
 pub mod cpu_image;
+pub mod effects;
 pub mod lookups;
 pub mod numbers;
 pub mod panes;

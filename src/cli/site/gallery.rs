@@ -3,9 +3,12 @@
 //! Input: the techniques of the site. Output: commands as a user writes them, and the pictures that they draw. The command that is shown is
 //! the one that runs, on the CPU device, so that no picture depends on a driver.
 
+use std::ffi::OsString;
+
 use clap::{Args as _, Command as Parser, FromArgMatches as _};
 
 use super::Entry;
+use crate::cli::effects::{EFFECTS, Effect, with_arguments};
 use crate::cli::output::Failure;
 use crate::cli::playground::example;
 use crate::cli::render::Render;
@@ -28,17 +31,12 @@ pub(super) struct Command {
 /// A picture of a larger scene: name, caption and the command without its output.
 type Scene = (&'static str, &'static str, &'static str);
 
-/// Pictures of larger scenes, which the README shows, too.
+/// Pictures of larger scenes beside those of the effects. The README shows them, too.
 const SCENES: &[Scene] = &[
     (
         "glass",
         "Coloured glass: the effect is a closure of eight lines",
         "examples/glass.fragbuf --scene builtin:marbles,n=160 --uniform eye=0.45,0.37,0.81 --size 960x540",
-    ),
-    (
-        "csg",
-        "Constructive solid geometry: one cube without another",
-        "examples/csg.fragbuf --scene builtin:cubes --uniform a=0 --uniform b=1 --size 320x240",
     ),
     (
         "most_visible",
@@ -68,21 +66,24 @@ const SCENES: &[Scene] = &[
     ),
 ];
 
-/// Returns the commands: one for each technique, and those of the larger scenes if `scenes`.
+/// Returns the commands: one for each technique, and those of the effects and the larger scenes if `scenes`.
 pub(super) fn commands(entries: &[Entry], scenes: bool) -> Vec<Command> {
-    let large = SCENES.iter().filter(|_| scenes).map(|(name, caption, arguments)| Command {
-        name: (*name).to_owned(),
-        caption: (*caption).to_owned(),
+    let large = |name: &str, caption: &str, arguments: &str| Command {
+        name: name.to_owned(),
+        caption: caption.to_owned(),
         text: format!("fragbuf render {arguments} --out {name}.png"),
         technique: None,
-    });
+    };
+    let effect = |effect: &Effect| large(effect.name, &effect.caption(), &format!("--effect {}", effect.name));
+    let effects = EFFECTS.iter().filter(|_| scenes).map(effect);
+    let large = SCENES.iter().filter(|_| scenes).map(|(name, caption, arguments)| large(name, caption, arguments));
     let techniques = entries.iter().map(|Entry { key, title, .. }| Command {
         name: key.clone(),
         caption: (*title).to_owned(),
         text: format!("fragbuf render {key} --scene builtin:marbles --size 320x240 --out {key}.png"),
         technique: Some(key.clone()),
     });
-    large.chain(techniques).collect()
+    effects.chain(large).chain(techniques).collect()
 }
 
 /// Returns the path of a picture.
@@ -104,7 +105,8 @@ impl Command {
     /// Parses the command. An example is read from this program.
     fn parsed(&self) -> Result<Render, Failure> {
         let words: Vec<&str> = self.text.split_whitespace().skip(1).collect();
-        let matches = Render::augment_args(Parser::new("render")).try_get_matches_from(&words);
+        let all = with_arguments(words.iter().map(OsString::from).collect());
+        let matches = Render::augment_args(Parser::new("render")).try_get_matches_from(all);
         let render = matches.and_then(|matches| Render::from_arg_matches(&matches));
         let render = render.map_err(|error| Failure::Usage(format!("`{}`: {error}", self.text)))?;
         let file = words.get(1).and_then(|word| word.strip_prefix("examples/")?.strip_suffix(".fragbuf"));

@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "a test fails by a panic")]
 
 mod draw;
+mod effects;
 mod errors;
 mod facing;
 #[path = "../../../../tests/oracle/hosts.rs"]

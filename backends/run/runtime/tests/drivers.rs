@@ -155,7 +155,7 @@ fn interlock_where_the_device_has_it() {
 }
 
 /// Runs a test of this binary on SwiftShader and returns what it printed.
-fn on_swiftshader(test: &str) -> String {
+pub fn on_swiftshader(test: &str) -> String {
     assert!(Path::new(SWIFTSHADER).exists(), "this test needs SwiftShader: install Debian's package chromium");
     let output = Command::new(std::env::current_exe().unwrap())
         .args([test, "--exact", "--nocapture"])

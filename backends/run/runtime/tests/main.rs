@@ -27,6 +27,7 @@ mod cpu_device;
 mod criteria;
 mod culled_objects;
 mod drivers;
+mod effects;
 mod embedding;
 mod failures;
 mod importance;

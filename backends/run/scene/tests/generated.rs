@@ -109,7 +109,7 @@ fn unknown_names_list_the_known_ones() {
     };
     assert_eq!(
         error("builtin:bunny"),
-        "no scene `builtin:bunny`: the scenes are cubes, slabs, layers, marbles, hairball, needles, slivers, tets, particles, part, building"
+        "no scene `builtin:bunny`: the scenes are cubes, slabs, layers, marbles, hairball, needles, slivers, tets, particles, part, building, knot"
     );
     assert_eq!(error("builtin:slabs,k=3"), "`builtin:slabs` has no `k`: its parameters are n (16), seed (1)");
     let advice = "write a whole number from 1 to 65536, as `n=16`";
@@ -125,7 +125,7 @@ fn project(matrix: &[f32; 16], [x, y, z]: [f32; 3]) -> [f32; 3] {
 
 #[test]
 fn the_framing_camera_shows_the_whole_scene_at_full_size() {
-    for name in ["cubes", "slabs", "marbles", "hairball,strands=9", "needles,n=40"] {
+    for name in ["cubes", "slabs", "marbles", "knot", "hairball,strands=9", "needles,n=40"] {
         for aspect in [0.3, 1.0, 2.5] {
             let made = scene(name);
             let camera = Camera::framing(&[&made], aspect);

@@ -6,6 +6,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "a test fails by a panic")]
 
 mod drivers;
+mod effects;
 mod facing;
 #[path = "../../../../tests/oracle/hosts.rs"]
 mod hosts;

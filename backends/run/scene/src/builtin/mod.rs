@@ -4,6 +4,7 @@ mod attributes;
 mod building;
 mod cubes;
 mod hairball;
+mod knot;
 mod layers;
 mod marbles;
 mod needles;
@@ -32,7 +33,7 @@ pub struct BuiltinScene {
 }
 
 /// The registry rows of all generated scenes.
-pub const BUILTIN_SCENES: [Row; 11] = [
+pub const BUILTIN_SCENES: [Row; 12] = [
     cubes::ROW,
     slabs::ROW,
     layers::ROW,
@@ -44,6 +45,7 @@ pub const BUILTIN_SCENES: [Row; 11] = [
     particles::ROW,
     part::ROW,
     building::ROW,
+    knot::ROW,
 ];
 
 impl BuiltinScene {
@@ -74,7 +76,7 @@ impl FromStr for BuiltinScene {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self, Error> {
-        static ROWS: [Row; 11] = BUILTIN_SCENES;
+        static ROWS: [Row; 12] = BUILTIN_SCENES;
         let mut parts = text.split(',');
         let name = parts.next().unwrap_or("");
         let Some(row) = ROWS.iter().find(|row| row.name == name) else {
