@@ -162,7 +162,7 @@ fn textures_that_do_not_fit_are_errors() {
     let solid = describe(&folder, "volume", "texture { volume: 3d } resolve |fragments, u| u.volume.load(0, 0, 0)");
     let none = describe(&folder, "none", "");
     let rendered = format!("lut=rendered:{},camera=auto", lut.display());
-    let cases: [(&Path, &[String], &str); 15] = [
+    let cases: [(&Path, &[String], &str); 17] = [
         (&lut, &[], "add `--texture lut=FILE.png`"),
         (&solid, &[], "add `--texture volume=FILE.png,slices=N`"),
         (&lut, &[format!("lot={image}")], "did you mean `lut`?"),
@@ -176,6 +176,8 @@ fn textures_that_do_not_fit_are_errors() {
         (&lut, &[format!("lut=preintegrated:{image}")], "declare `lut: 3d`"),
         (&solid, &[format!("volume=preintegrated:{image},length=-1")], "`length` takes a number above 0"),
         (&lut, &["lut=rendered:kplus_array".to_owned()], "`camera` is missing"),
+        (&lut, &["lut=rendered:effect:midpoints,camera=auto".to_owned()], "did you mean `midpoint`?"),
+        (&solid, &["volume=preintegrated:builtin:sheels".to_owned()], "it is `builtin:shells`"),
         (&lut, &[rendered], "cannot be given"),
         (&lut, &["lut".to_owned()], "name=FILE"),
     ];

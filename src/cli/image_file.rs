@@ -19,6 +19,14 @@ pub(crate) struct ImageFile {
     pub(crate) memory: Budget,
 }
 
+impl ImageFile {
+    /// Returns the pixels of the first row.
+    pub(crate) fn first_row(mut self) -> Vec<[f32; 4]> {
+        self.texels.truncate(self.size.0 as usize);
+        self.texels
+    }
+}
+
 /// The bytes per pixel: at most four channels of 16 bits, the numbers, and the texture of a device.
 const BYTES: u64 = 8 + 16 + 16;
 

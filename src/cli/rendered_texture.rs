@@ -1,21 +1,25 @@
 //! Textures that another description draws from a camera of its own, such as shadow maps:
-//! `--texture shadow=rendered:FILE,camera=…,size=…,uniform=…`.
+//! `--texture shadow=rendered:FILE,camera=…,size=…,uniform=…`. `effect:NAME` instead of the file is an effect of the program.
 //!
 //! Input: the text of an option. Output: the description, the camera, the size and values of uniforms, or a message.
 
 use super::camera::CameraRequest;
+use super::effects::{self, Effect};
 use super::output::Failure;
 use super::view::{View, size};
 
 /// What precedes the description.
 const PREFIX: &str = "rendered:";
 
+/// What precedes the name of an effect of the program in a description.
+const EFFECT: &str = "effect:";
+
 /// A texture that another description draws.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RenderedTexture {
     /// The name in the description that reads it.
     pub(crate) name: String,
-    /// The key of a technique or the file of a description.
+    /// The key of a technique, the file of a description, or `effect:` and the name of an effect.
     pub(crate) description: String,
     pub(crate) camera: CameraRequest,
     pub(crate) size: (u32, u32),
@@ -36,6 +40,19 @@ impl RenderedTexture {
     /// Returns the rendered textures among those of a view.
     pub(crate) fn all(view: &View) -> Result<Vec<Self>, Failure> {
         view.textures.iter().filter_map(|(name, source)| RenderedTexture::parse(name, source)).collect()
+    }
+
+    /// Returns the effect of the program that draws the texture; `None`: a technique or a file.
+    pub(crate) fn effect(&self) -> Result<Option<&'static Effect>, Failure> {
+        let name = self.description.strip_prefix(EFFECT);
+        let effect = name.map(effects::parse).transpose();
+        effect.map_err(|message| Failure::Usage(format!("`--texture {}`: {message}", self.name)))
+    }
+
+    /// Returns the file of the description in the source of a texture; `None`: it is no file.
+    pub(crate) fn file(source: &str) -> Option<&str> {
+        let description = source.strip_prefix(PREFIX)?.split(',').next()?;
+        (!description.starts_with(EFFECT)).then_some(description)
     }
 
     fn parse_rest(name: &str, text: &str) -> Result<Self, String> {
@@ -91,8 +108,21 @@ mod tests {
         assert_eq!(parsed.uniforms, uniforms);
         assert_eq!(parsed.camera, "orbit:30,60,zoom:1.5".parse().unwrap());
         assert!(RenderedTexture::parse("shadow", "map.png").is_none());
+        assert_eq!((RenderedTexture::file(source), RenderedTexture::file("map.png")), (Some("map.fragbuf"), None));
         for wrong in ["rendered:", "rendered:a", "rendered:a,size=2x2", "rendered:a,camera=up", "rendered:a,4"] {
             assert!(RenderedTexture::parse("shadow", wrong).unwrap().is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn effects_are_descriptions() {
+        let of = |name: &str| {
+            let source = format!("rendered:effect:{name},camera=auto");
+            assert_eq!(RenderedTexture::file(&source), None);
+            RenderedTexture::parse("shadow", &source).and_then(Result::ok).unwrap().effect()
+        };
+        assert!(of("midpoint").is_ok_and(|effect| effect.is_some_and(|effect| effect.name == "midpoint")));
+        let Err(Failure::Usage(message)) = of("midpoints") else { panic!("an effect of this name") };
+        assert!(message.contains("--texture shadow") && message.contains("did you mean `midpoint`?"), "{message}");
     }
 }

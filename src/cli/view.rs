@@ -31,7 +31,7 @@ pub(crate) struct View {
     #[arg(long, value_name = "PNG")]
     pub(crate) importance: Option<PathBuf>,
     /// Texture of the description: a PNG, with `,slices=N` for three dimensions (slices one below the other), or
-    /// `preintegrated:PNG,length=L,extinction=E`, the table of a transfer function for ray segments, or
+    /// `preintegrated:PNG,length=L,extinction=E`, the table of a transfer function for ray segments (or of `builtin:shells`), or
     /// `rendered:DESCRIPTION,camera=CAMERA,size=WxH`, what another description draws of the scene, as floats. Channels are read as stored, from 0 to 1
     #[arg(long = "texture", value_name = "NAME=PNG[,slices=N]", value_parser = texture)]
     pub(crate) textures: Vec<(String, String)>,
@@ -251,10 +251,10 @@ impl View {
     pub(crate) fn files(&self) -> impl Iterator<Item = PathBuf> {
         let scenes = std::iter::once(&self.scene).chain(&self.opaque);
         let models = scenes.filter(|scene| !scene.starts_with("builtin:")).map(PathBuf::from);
-        let textures = self.textures.iter().map(|(_, source)| {
-            let path = ["preintegrated:", "rendered:"].iter().find_map(|prefix| source.strip_prefix(prefix));
-            let path = path.unwrap_or(source);
-            PathBuf::from(path.split(',').next().unwrap_or_default())
+        let textures = self.textures.iter().filter_map(|(_, source)| match source.strip_prefix("preintegrated:") {
+            None if source.starts_with("rendered:") => RenderedTexture::file(source).map(PathBuf::from),
+            Some(table) if table.starts_with("builtin:") => None,
+            path => path.unwrap_or(source).split(',').next().map(PathBuf::from),
         });
         models.chain(self.importance.clone()).chain(textures)
     }

@@ -39,12 +39,20 @@ fn job((what, effect, variant): (&str, &Effect, &Variant), solids: &Solids, fold
     let inputs = manifest(&generation, 0)["vertex_inputs"].clone();
     let inputs: Vec<&str> = inputs.as_array().unwrap().iter().map(|input| input["name"].as_str().unwrap()).collect();
     std::fs::write(folder.join("scene.bin"), solids.vertices(&inputs)).unwrap();
+    let files = folder;
     let folder = folder.file_name().unwrap().to_str().unwrap();
+    let textures = effect.textures(solids).into_iter().map(|(name, texels)| {
+        let bytes: Vec<u8> = texels.values.iter().flatten().flat_map(|value| value.to_le_bytes()).collect();
+        std::fs::write(files.join(format!("{name}.bin")), bytes).unwrap();
+        let dimension = if texels.size[2] > 1 { "3d" } else { "2d" };
+        json!({ "name": name, "dimension": dimension, "size": texels.size, "file": format!("{folder}/{name}.bin") })
+    });
+    let textures: Vec<Value> = textures.collect();
     let uniforms: Map<String, Value> =
         effect.uniforms.iter().map(|(name, number)| ((*name).to_owned(), value(*number))).collect();
     Some(json!({
         "name": what, "folder": folder, "size": SIZE, "background": BACKGROUND, "symbols": {}, "uniforms": uniforms,
-        "textures": [], "scenes": [{ "vertices": format!("{folder}/scene.bin"), "count": solids.count(), "objects": null }],
+        "textures": textures, "scenes": [{ "vertices": format!("{folder}/scene.bin"), "count": solids.count(), "objects": null }],
         "runs": [{ "scenes": [0], "options": {} }],
     }))
 }
@@ -54,5 +62,6 @@ fn value(number: Number) -> Value {
         Number::F32(value) => json!(value),
         Number::U32(value) => json!(value),
         Number::Vec3(values) => json!(values),
+        Number::Vec4(values) => json!(values),
     }
 }

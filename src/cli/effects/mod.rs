@@ -34,7 +34,7 @@ pub(crate) struct Effect {
 const OPTION: &str = "--effect";
 
 /// The options that a command may have several times. Of equal names, the last value counts.
-const REPEATED: [&str; 3] = ["--set", "--uniform", "--attribute"];
+const REPEATED: [&str; 4] = ["--set", "--uniform", "--attribute", "--texture"];
 
 /// Finds an effect by its name.
 pub(crate) fn parse(name: &str) -> Result<&'static Effect, String> {

@@ -158,6 +158,25 @@ pub(crate) const EFFECTS: &[Effect] = &[
         ]
     ),
     row!(
+        "midpoint_shadows",
+        "shadows by a midpoint shadow map, which needs no bias",
+        "B06 §4.1, Woo 1992",
+        reads: Some(1),
+        &[
+            ("--scene", "builtin:knot,turns=7,thickness=22,rings=800,sides=64"),
+            ("--size", "960x540"),
+            ("--camera", "orbit:15,20,zoom:1.05"),
+            ("--shading", "unlit"),
+            ("--texture", "shadow=rendered:effect:midpoint,camera=orbit:-40,50,size=2048x2048,near=0,far=1"),
+            ("--uniform", "x=shadow.x"),
+            ("--uniform", "y=shadow.y"),
+            ("--uniform", "z=shadow.z"),
+            ("--uniform", "w=shadow.w"),
+            ("--uniform", "lamp=shadow.camera"),
+            ("--set", "samples=coverage"),
+        ]
+    ),
+    row!(
         "silhouettes",
         "lines where the depth jumps, and normals, both by differences between pixels",
         "B06 §4.1",
@@ -200,6 +219,21 @@ pub(crate) const EFFECTS: &[Effect] = &[
         ]
     ),
     row!(
+        "volume_table",
+        "direct volume rendering by a pre-integrated table: thin shells, over a stream with a small k",
+        "B06 §4.3, Engel et al. 2001",
+        reads: None,
+        &[
+            ("--scene", "builtin:tets,n=16"),
+            ("--size", "960x540"),
+            ("--camera", "orbit:15,50,zoom:1.3"),
+            ("--background", "0.01,0.01,0.02,1"),
+            ("--presort", "nearest"),
+            ("--texture", "table=preintegrated:builtin:shells,length=0.2,extinction=25,scalars=128,lengths=32"),
+            ("--uniform", "length=0.2"),
+        ]
+    ),
+    row!(
         "isosurface",
         "where the scalar of a tetrahedral mesh has a value",
         "B06 §4.3",
@@ -210,6 +244,19 @@ pub(crate) const EFFECTS: &[Effect] = &[
             ("--camera", "orbit:15,50,zoom:1.2"),
             ("--uniform", "value=0.15"),
             ("--uniform", "alpha=0.6"),
+        ]
+    ),
+    row!(
+        "particles",
+        "the surface that particles form together, where the sum of their fields has a value",
+        "B06 §4.3, Fig. 10b",
+        reads: None,
+        &[
+            ("--scene", "builtin:particles,n=3000,size=400"),
+            ("--size", "960x540"),
+            ("--camera", "orbit:15,20,zoom:1.1"),
+            ("--shading", "unlit"),
+            ("--uniform", "value=1.5"),
         ]
     ),
 ];

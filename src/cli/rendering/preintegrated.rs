@@ -23,6 +23,37 @@ const STEPS: u32 = 64;
 /// The most texels along an axis.
 const MOST: u32 = 256;
 
+/// What precedes the name of a transfer function of the program.
+const BUILTIN: &str = "builtin:";
+
+/// The colours of `shells`, at equal distances of the scalar, and the scalars of its shells.
+const COLORS: [[f64; 3]; 4] = [[0.05, 0.1, 0.5], [0.1, 0.55, 0.6], [0.95, 0.6, 0.1], [1.0, 0.15, 0.05]];
+const SHELLS: [f64; 4] = [0.12, 0.35, 0.6, 0.85];
+
+/// The texels of `shells`, and the width of a shell.
+const TEXELS: u32 = 256;
+const WIDTH: f64 = 0.025;
+
+/// Returns a transfer function of the program; `None`: the path of an image.
+pub(super) fn builtin(path: &str) -> Option<Result<Vec<[f32; 4]>, String>> {
+    match path.strip_prefix(BUILTIN)? {
+        "shells" => Some(Ok(shells())),
+        other => Some(Err(format!("no transfer function is `{BUILTIN}{other}`: it is `{BUILTIN}shells`"))),
+    }
+}
+
+/// Returns thin layers of several colours in a faint mist, as 256 texels.
+fn shells() -> Vec<[f32; 4]> {
+    let colors = COLORS.map(|[red, green, blue]| [red as f32, green as f32, blue as f32, 1.0]);
+    let texel = |index: u32| {
+        let scalar = f64::from(index) / f64::from(TEXELS - 1);
+        let shell = |at: &f64| (-((scalar - at) / WIDTH).powi(2)).exp();
+        let [red, green, blue, _] = value(&colors, scalar).map(|channel| channel as f32);
+        [red, green, blue, (0.01 + 0.99 * SHELLS.iter().map(shell).sum::<f64>()).min(1.0) as f32]
+    };
+    (0..TEXELS).map(texel).collect()
+}
+
 impl Settings {
     /// Reads options.
     pub(super) fn parse(options: &[(&str, &str)]) -> Result<Self, String> {
@@ -102,7 +133,17 @@ fn value(transfer: &[[f32; 4]], scalar: f64) -> [f64; 4] {
 
 #[cfg(test)]
 mod tests {
-    use super::{Settings, table};
+    use super::{SHELLS, Settings, builtin, table, value};
+
+    /// The opacity is greatest at each shell, and small between them.
+    #[test]
+    fn shells_are_thin() {
+        let transfer = builtin("builtin:shells").unwrap().unwrap();
+        for at in SHELLS {
+            assert!(value(&transfer, at)[3] > 0.9 && value(&transfer, at + 0.1)[3] < 0.05, "{at}");
+        }
+        assert!(builtin("builtin:other").unwrap().is_err() && builtin("shells.png").is_none());
+    }
 
     /// Where the transfer function is constant, a segment has the opacity 1 - exp(-τ d) (Beer–Lambert).
     #[test]

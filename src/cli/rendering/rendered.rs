@@ -20,7 +20,10 @@ use crate::cli::uniforms;
 pub(super) fn draw(texture: &RenderedTexture, task: &RenderTask<'_>, memory: Budget) -> Result<Vec<[f32; 4]>, Failure> {
     let registry = Registry::builtin();
     let name = &texture.name;
-    let mut input = Input::read(&texture.description, &registry)?;
+    let mut input = match texture.effect()? {
+        Some(effect) => Input::text(effect.path, effect.text),
+        None => Input::read(&texture.description, &registry)?,
+    };
     let variant = input.variant(&[], &registry)?;
     reject_textures(name, &variant)?;
     let scene = task.scene;

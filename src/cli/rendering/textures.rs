@@ -85,7 +85,8 @@ pub(in crate::cli) fn check_names(variants: &[&Variant], given: &[(String, Strin
     Err(Failure::Usage(format!("the description has no texture `{name}`: {known}")))
 }
 
-/// What gives the texels of a texture: `FILE.png`, `FILE.png,slices=N`, `preintegrated:FILE.png,…`.
+/// What gives the texels of a texture: `FILE.png`, `FILE.png,slices=N`, `preintegrated:FILE.png,…`, and
+/// `preintegrated:builtin:NAME,…`.
 struct Source<'a> {
     path: &'a str,
     options: Vec<(&'a str, &'a str)>,
@@ -109,16 +110,20 @@ impl<'a> Source<'a> {
 
     fn read(&self, name: &str, dimension: TextureDimension, memory: Budget) -> Result<(TextureData, Budget), Failure> {
         let usage = |message: String| Failure::Usage(format!("`--texture {name}`: {message}"));
-        let image = read_image(self.path.as_ref(), memory)?;
         if self.is_table {
             let settings = preintegrated::Settings::parse(&self.options).map_err(usage)?;
+            let transfer = match preintegrated::builtin(self.path).transpose().map_err(usage)? {
+                Some(transfer) => transfer,
+                None => read_image(self.path.as_ref(), memory).map(|image| image.first_row())?,
+            };
             if dimension != TextureDimension::D3 {
                 return Err(usage(format!("a pre-integrated table has three dimensions: declare `{name}: 3d`")));
             }
             let memory = memory.without(settings.bytes(), "a pre-integrated table")?;
-            let (size, texels) = preintegrated::table(&image.texels[..image.size.0 as usize], &settings);
+            let (size, texels) = preintegrated::table(&transfer, &settings);
             return Ok((TextureData { name: name.to_owned(), size, texels }, memory));
         }
+        let image = read_image(self.path.as_ref(), memory)?;
         let slices = self.slices(name, dimension, &image)?;
         let ImageFile { size: (width, height), texels, memory } = image;
         Ok((TextureData { name: name.to_owned(), size: [width, height / slices, slices], texels }, memory))

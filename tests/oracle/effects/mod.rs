@@ -9,7 +9,9 @@ mod colors;
 mod crossings;
 mod images;
 mod layers;
+mod particles;
 mod ray;
+mod shadows;
 mod solids;
 mod volumes;
 
@@ -27,6 +29,8 @@ pub struct Effect {
     pub name: &'static str,
     text: &'static str,
     pub uniforms: &'static [(&'static str, Number)],
+    /// Textures, each with a function that computes its texels.
+    textures: &'static [(&'static str, fn(&Solids) -> Texels)],
     /// Techniques, each with its k; `None`: it keeps all fragments.
     storages: &'static [Storage],
     /// Returns the scene.
@@ -46,12 +50,21 @@ enum Reference {
 /// A technique with its k; `None`: it keeps all fragments.
 type Storage = (&'static str, Option<u32>);
 
+/// The texels of a texture.
+pub struct Texels {
+    /// Columns, rows and slices.
+    pub size: [u32; 3],
+    /// Row after row from the top, slice after slice.
+    pub values: Vec<[f32; 4]>,
+}
+
 /// The value of a uniform.
 #[derive(Clone, Copy)]
 pub enum Number {
     F32(f32),
     U32(u32),
     Vec3([f32; 3]),
+    Vec4([f32; 4]),
 }
 
 impl Number {
@@ -61,6 +74,7 @@ impl Number {
             Number::F32(value) => vec![value.to_bits()],
             Number::U32(value) => vec![value],
             Number::Vec3(values) => values.map(f32::to_bits).to_vec(),
+            Number::Vec4(values) => values.map(f32::to_bits).to_vec(),
         }
     }
 
@@ -77,6 +91,15 @@ const ALL: &[Storage] = &[("ab_ll", None), ("ab_sb", None), ("kplus_array", Some
 const PEELED: &[Storage] =
     &[("ab_ll", None), ("ab_sb", None), ("kplus_array", Some(16)), ("mdt32_coplanar", Some(16)), ("f2b_ll", None)];
 
+/// The same as all, and a stream that restores any order of so few fragments.
+const STREAMED: &[Storage] = &[
+    ("kb_stream", Some(16)),
+    ("ab_ll", None),
+    ("ab_sb", None),
+    ("kplus_array", Some(16)),
+    ("mdt32_coplanar", Some(16)),
+];
+
 /// Storages for the two nearest fragments. Peeling keeps one fragment of equal depths, or all of them.
 const TWO: &[Storage] = &[("kplus_array", Some(2)), ("ab_sb", None), ("mdt32_coplanar", Some(2)), ("f2b_ll", None)];
 
@@ -87,16 +110,20 @@ const NEAREST: &[Storage] =
 /// Names an effect with the text of its description.
 macro_rules! effect {
     ($name:literal, $uniforms:expr, $scene:ident over $storages:expr, $mutation:expr, neighbours $color:expr) => {
-        effect!($name, $uniforms, $scene over $storages, $mutation; Reference::OfNeighbours($color))
+        effect!($name, $uniforms, $scene over $storages, $mutation; Reference::OfNeighbours($color), &[])
+    };
+    ($name:literal, $uniforms:expr, textures $textures:expr, $scene:ident over $storages:expr, $mutation:expr, $color:expr) => {
+        effect!($name, $uniforms, $scene over $storages, $mutation; $color, $textures)
     };
     ($name:literal, $uniforms:expr, $scene:ident over $storages:expr, $mutation:expr, $color:expr) => {
-        effect!($name, $uniforms, $scene over $storages, $mutation; Reference::OfRay($color))
+        effect!($name, $uniforms, $scene over $storages, $mutation; Reference::OfRay($color), &[])
     };
-    ($name:literal, $uniforms:expr, $scene:ident over $storages:expr, $mutation:expr; $color:expr) => {
+    ($name:literal, $uniforms:expr, $scene:ident over $storages:expr, $mutation:expr; $color:expr, $textures:expr) => {
         Effect {
             name: $name,
             text: include_str!(concat!("../../../examples/effects/", $name, ".fragbuf")),
             uniforms: $uniforms,
+            textures: $textures,
             storages: $storages,
             scene: Solids::$scene,
             mutation: $mutation,
@@ -148,11 +175,26 @@ pub const EFFECTS: &[Effect] = &[
         volumes::volume
     ),
     effect!(
+        "volume_table",
+        &[("length", Number::F32(volumes::LENGTH))],
+        textures &[("table", volumes::table)],
+        mesh over STREAMED,
+        ("vec3(front.scalar, back.scalar", "vec3(back.scalar, front.scalar"),
+        Reference::OfRay(volumes::volume_table)
+    ),
+    effect!(
         "isosurface",
         &[("value", Number::F32(volumes::VALUE)), ("alpha", Number::F32(layers::ALPHA))],
         mesh over ALL,
         ("lerp(back.scalar_gradient, at)", "lerp(back.scalar_gradient, 0.5)"),
         volumes::isosurface
+    ),
+    effect!(
+        "particles",
+        &[("value", Number::F32(particles::VALUE))],
+        particles over ALL,
+        ("offset.dot(offset)", "0.8 * offset.dot(offset)"),
+        neighbours particles::particles
     ),
     effect!(
         "silhouettes",
@@ -179,6 +221,14 @@ pub const EFFECTS: &[Effect] = &[
         ("depths + 1.0", "depths + 0.9"),
         colors::midpoint
     ),
+    effect!(
+        "midpoint_shadows",
+        shadows::UNIFORMS,
+        textures &[("shadow", shadows::map)],
+        open over NEAREST,
+        ("depth <= 1.0 - map.x", "depth <= 0.999 - map.x"),
+        Reference::OfNeighbours(shadows::midpoint_shadows)
+    ),
 ];
 
 impl Effect {
@@ -192,6 +242,11 @@ impl Effect {
         let (part, other) = self.mutation;
         assert!(self.text.contains(part), "{}: no `{part}` to change", self.name);
         over(&self.text.replace(part, other), &self.storages[0])
+    }
+
+    /// Returns the textures of the description, by their names.
+    pub fn textures(&self, solids: &Solids) -> Vec<(&'static str, Texels)> {
+        self.textures.iter().map(|(name, texels)| (*name, texels(solids))).collect()
     }
 
     /// Returns the scene.
@@ -245,6 +300,10 @@ fn over(text: &str, (technique, k): &Storage) -> Variant {
     let mut draft = parsed.draft.unwrap();
     let k = k.map_or("all".to_owned(), |k| k.to_string());
     draft.set("k", &k, &SourceSpan::new("k", 1, 1)).unwrap();
+    // Few drivers have the interlock that the stream prefers.
+    if *technique == "kb_stream" {
+        draft.set("sync", "spin_lock", &SourceSpan::new("sync", 1, 1)).unwrap();
+    }
     check(&draft, &Registry::builtin()).unwrap_or_else(|errors| panic!("{technique}: {errors}"))
 }
 

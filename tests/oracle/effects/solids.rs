@@ -5,6 +5,14 @@
 /// The width and height of the frame. Positions in pixels are exact in clip space, because they are powers of two.
 pub const SIZE: [u32; 2] = [32, 32];
 
+/// Particles: centre and radius in clip space, and colour.
+pub const BALLS: [([f64; 3], f64, [u8; 3]); 4] = [
+    ([-0.3125, 0.125, 0.4], 0.38, [230, 70, 50]),
+    ([0.1875, 0.25, 0.5], 0.4, [60, 180, 90]),
+    ([0.0625, -0.3125, 0.45], 0.36, [50, 90, 220]),
+    ([0.4375, -0.1875, 0.62], 0.35, [220, 190, 60]),
+];
+
 /// A triangle. Its corners are counter-clockwise in the image if its front faces the camera.
 pub struct Triangle {
     /// In clip space, where w is 1.
@@ -73,6 +81,22 @@ impl Solids {
         solids
     }
 
+    /// Returns octahedra within particles. Their corners are at quarters of pixels: some rasterisers round positions to sixteenths.
+    pub fn particles() -> Self {
+        let mut solids = Solids { triangles: Vec::new() };
+        let pixels = |[x, y, depth]: [f64; 3]| {
+            let quarter = |value: f64, size: u32| (4.0 * value * f64::from(size) / 2.0).round() / 4.0;
+            [quarter(x, SIZE[0]), quarter(-y, SIZE[1]), depth]
+        };
+        for (id, (centre, radius, [r, g, b])) in (0..).zip(BALLS) {
+            let axes =
+                [[2.0, 3.0, 6.0], [3.0, -6.0, 2.0], [6.0, 2.0, -3.0]].map(|axis| pixels(scale(axis, radius / 7.0)));
+            let centre = add(pixels(centre), [f64::from(SIZE[0]) / 2.0, f64::from(SIZE[1]) / 2.0, 0.0]);
+            solids.octahedron(centre, axes, id, [r, g, b, 255]);
+        }
+        solids
+    }
+
     fn tetrahedra(&mut self, centre: [f64; 3], axes: [[f64; 3]; 3], id: u32) {
         self.octahedron(centre, axes, id, [255; 4]);
         let tip = |bits: usize| {
@@ -137,6 +161,8 @@ impl Solids {
                         "color" => push(&triangle.color.map(|channel| f64::from(channel) / 255.0)),
                         "edges" => push(&triangle.edge_distances(corner)),
                         "normal" => push(&triangle.normal),
+                        "centre" => push(&BALLS[triangle.id as usize].0),
+                        "radius" => push(&[BALLS[triangle.id as usize].1]),
                         "id" => bytes.extend(triangle.id.to_le_bytes()),
                         "scalar" => push(&[scalar(corner)]),
                         "scalar_gradient" => push(&gradient(corner)),

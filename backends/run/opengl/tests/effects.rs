@@ -2,7 +2,7 @@
 
 use fragbuf_codegen::Form;
 use fragbuf_follow::Object;
-use fragbuf_opengl_host::{Api, Scene};
+use fragbuf_opengl_host::{Api, Scene, Texels};
 use fragbuf_templates::Registry;
 
 use crate::draw::{context, generated, host, inputs};
@@ -14,13 +14,16 @@ fn every_effect() {
     let context = context(Api::OpenGl);
     for effect in EFFECTS {
         let solids = effect.solids();
-        let expected = effect.expected(&solids);
+        let (expected, textures) = (effect.expected(&solids), effect.textures(&solids));
         for (what, variant) in effect.variants() {
             let generation = generated(context.api, Form::Program, &variant, &Registry::builtin());
             let generation = generation.unwrap_or_else(|why| panic!("{what}: {why}"));
             let mut host = host(&context, &generation, SIZE).unwrap_or_else(|error| panic!("{what}: {error}"));
             host.set_symbol("fragments", u64::from(solids.count() * SIZE[0] * SIZE[1])).unwrap();
             effect.uniforms.iter().for_each(|(name, number)| host.set_uniform(name, &number.bytes()).unwrap());
+            for (name, texels) in &textures {
+                host.set_texels(name, &Texels { size: texels.size, values: &texels.values }).unwrap();
+            }
             let inputs = inputs(&host);
             let vertices = solids.vertices(&inputs.iter().map(String::as_str).collect::<Vec<_>>());
             let bounds = [[-1.0, -1.0, 0.0], [1.0, 1.0, 1.0]];

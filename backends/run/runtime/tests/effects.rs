@@ -5,13 +5,15 @@ use std::sync::Arc;
 use fragbuf_cpu::{Code, Device, Mesh};
 use fragbuf_model::Variant;
 use fragbuf_runtime::headless::{Headless, Offscreen};
-use fragbuf_runtime::{Settings, Value, VertexInputs};
+use fragbuf_runtime::{Settings, Value, VertexInputs, block_on};
 use fragbuf_targets::target;
 use fragbuf_templates::Registry;
+use fragbuf_templates::vocabulary::TextureDimension;
 
 use crate::drivers::on_swiftshader;
+use crate::lookups::texture;
 use crate::stage::{FORMAT, device, draw_bytes, renderer, shaders};
-use oracle::{BACKGROUND, EFFECTS, Effect, Number, SIZE, Solids, difference};
+use oracle::{BACKGROUND, EFFECTS, Effect, Number, SIZE, Solids, Texels, difference};
 
 #[path = "../../../../tests/oracle/effects/mod.rs"]
 mod oracle;
@@ -21,6 +23,7 @@ fn value(number: Number) -> Value {
         Number::F32(value) => Value::F32(value),
         Number::U32(value) => Value::U32(value),
         Number::Vec3(values) => Value::Vec3(values),
+        Number::Vec4(values) => Value::Vec4(values),
     }
 }
 
@@ -30,6 +33,11 @@ fn drawn(stage: &Headless, effect: &Effect, variant: &Variant, solids: &Solids) 
     let shaders = shaders(variant, if is_portable { "wgsl" } else { "wgsl-native" });
     let mut renderer = renderer(stage, &shaders, &Settings::new(FORMAT, SIZE[0], SIZE[1])).unwrap();
     effect.uniforms.iter().for_each(|(name, number)| renderer.set_uniform(name, value(*number)).unwrap());
+    for (name, Texels { size, values }) in &effect.textures(solids) {
+        let dimension = if size[2] > 1 { TextureDimension::D3 } else { TextureDimension::D2 };
+        let texture = texture(stage, dimension, *size, values);
+        block_on(&stage.device, renderer.set_texture(name, &texture)).unwrap().unwrap();
+    }
     let inputs: Vec<&str> = renderer.vertex_inputs().inputs.iter().map(|input| input.name.as_str()).collect();
     let bytes = solids.vertices(&inputs);
     let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE[0], SIZE[1]).unwrap();
@@ -61,6 +69,9 @@ fn drawn_on_cpu(effect: &Effect, variant: &Variant, solids: &Solids) -> Vec<[f32
     let code = Code::of(variant, &Registry::builtin()).unwrap_or_else(|error| panic!("{}: {error}", effect.name));
     let mut device = Device::new(Arc::new(code), fragbuf_cpu::Settings::new(SIZE[0], SIZE[1])).unwrap();
     effect.uniforms.iter().for_each(|(name, number)| device.set_uniform(name, value(*number)).unwrap());
+    for (name, Texels { size, values }) in &effect.textures(solids) {
+        device.set_description_texture(name, *size, values).unwrap();
+    }
     let inputs = VertexInputs::of(device.plan());
     let inputs: Vec<&str> = inputs.inputs.iter().map(|input| input.name.as_str()).collect();
     let bytes = solids.vertices(&inputs);

@@ -28,7 +28,7 @@ mod technique {
 }
 
 /// Creates a texture of floats with these texels.
-fn texture(stage: &Headless, dimension: TextureDimension, size: [u32; 3], texels: &[[f32; 4]]) -> wgpu::Texture {
+pub fn texture(stage: &Headless, dimension: TextureDimension, size: [u32; 3], texels: &[[f32; 4]]) -> wgpu::Texture {
     let [width, height, depth_or_array_layers] = size;
     let size = wgpu::Extent3d { width, height, depth_or_array_layers };
     let texture = stage.device.create_texture(&wgpu::TextureDescriptor {

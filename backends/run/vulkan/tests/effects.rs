@@ -2,7 +2,7 @@
 
 use fragbuf_follow::Object;
 use fragbuf_templates::Registry;
-use fragbuf_vulkan_host::{Scene, Validation};
+use fragbuf_vulkan_host::{Scene, Texels, Validation};
 
 use crate::hosts::effects::{BACKGROUND, EFFECTS, SIZE};
 use crate::hosts::technique::IDENTITY;
@@ -13,12 +13,15 @@ fn every_effect() {
     let context = context(Validation::On);
     for effect in EFFECTS {
         let solids = effect.solids();
-        let expected = effect.expected(&solids);
+        let (expected, textures) = (effect.expected(&solids), effect.textures(&solids));
         for (what, variant) in effect.variants() {
             let generated = Generated::of(&variant, &Registry::builtin());
             let mut host = generated.host(&context, SIZE).unwrap_or_else(|error| panic!("{what}: {error}"));
             host.set_symbol("fragments", u64::from(solids.count() * SIZE[0] * SIZE[1])).unwrap();
             effect.uniforms.iter().for_each(|(name, number)| host.set_uniform(name, &number.bytes()).unwrap());
+            for (name, texels) in &textures {
+                host.set_texels(name, &Texels { size: texels.size, values: &texels.values }).unwrap();
+            }
             let inputs = inputs(&host);
             let vertices = solids.vertices(&inputs.iter().map(String::as_str).collect::<Vec<_>>());
             let bounds = [[-1.0, -1.0, 0.0], [1.0, 1.0, 1.0]];

@@ -11,8 +11,12 @@ use crate::Object;
 
 pub(super) const ROW: Row = Row {
     name: "particles",
-    summary: "small balls along a knot, an object each, with scalar, centre and radius",
-    parameters: &[Parameter { name: "n", default: 4000, range: (1, 200_000) }, SEED],
+    summary: "small balls along a knot, an object each, with scalar, centre and radius; size is in per cent",
+    parameters: &[
+        Parameter { name: "n", default: 4000, range: (1, 200_000) },
+        SEED,
+        Parameter { name: "size", default: 100, range: (1, 1000) },
+    ],
     attributes: &[
         Attribute { name: "scalar", components: 1, is_integer: false },
         Attribute { name: "centre", components: 3, is_integer: false },
@@ -30,8 +34,8 @@ const STRAND: f32 = 0.3;
 
 fn generate(values: &[u32]) -> Objects {
     let (count, mut rng) = (value(values, 0), Rng::seeded(value(values, 1)));
-    // The balls fill about a sixth of the strand, whatever their number.
-    let size = (0.4 / count as f32).cbrt();
+    // The balls fill about a sixth of the strand, whatever their number, if their size is 100.
+    let size = value(values, 2) as f32 / 100.0 * (0.4 / count as f32).cbrt();
     Box::new((0..count).map(move |index| particle(index, size, &mut rng)))
 }
 
