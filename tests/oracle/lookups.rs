@@ -84,7 +84,12 @@ fn lookup(
     textures: Vec<(&'static str, [u32; 3], Vec<[f32; 4]>)>,
     expected: fn(&Lookup, &Frame<'_>, [i64; 2]) -> Option<[f64; 4]>,
 ) -> Lookup {
-    let keep = if storage.starts_with("ab_") { "" } else { "keep 8;" };
+    // No software driver has an interlock, which the technique prefers.
+    let keep = match storage {
+        "kb_stream" => "keep 8; sync: spin_lock;",
+        _ if storage.starts_with("ab_") => "",
+        _ => "keep 8;",
+    };
     let text = text.replace("STORAGE", storage).replace("KEEP", keep);
     let parsed = fragbuf_syntax::parse(&text, "lookups.fragbuf");
     assert!(parsed.diagnostics.is_empty(), "{}", parsed.diagnostics);
