@@ -110,7 +110,7 @@ fn another_description_draws_a_texture() {
         "map",
         "uniform { scale: f32 } resolve |fragments, u| vec4(u.scale * fragments[0].depth, 0.0, 0.0, 1.0)",
     );
-    // From the camera of the map, every visible point has the depth of the map.
+    // From the camera of the map, every visible point has the depth of the map: five texels of the map are a pixel, and the third has its centre.
     let shown = folder.join("shown.fragbuf");
     let text = "buffer Shown from kplus_array {
         fragment { depth: f32, position: vec3 }
@@ -129,7 +129,7 @@ fn another_description_draws_a_texture() {
     }";
     std::fs::write(&shown, text).unwrap();
     let camera = "orbit:20,30";
-    let texture = format!("map=rendered:{},camera={camera},size=240x160,scale=2", map.display());
+    let texture = format!("map=rendered:{},camera={camera},size=120x80,scale=2", map.display());
     let uniforms = ["x=map.x", "y=map.y", "z=map.z", "w=map.w", "eye=map.camera"].map(|uniform| ["--uniform", uniform]);
     let uniforms = uniforms.concat();
     let same = [["--texture", &texture, "--camera", camera].as_slice(), &uniforms].concat();

@@ -96,6 +96,7 @@ fn options_of(text: &str) -> Result<Vec<(String, String)>, String> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
 

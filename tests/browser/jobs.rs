@@ -46,13 +46,15 @@ pub struct Job {
     runs: Vec<Value>,
     uniforms: Value,
     /// External textures: name, format, and a number per pixel.
-    textures: Vec<(String, &'static str, Vec<f32>)>,
+    textures: Vec<External>,
     /// Textures of the description: name, columns, rows and slices, texels.
     described: Vec<Described>,
     pub drops_objects: bool,
     /// What each run shows.
     pub expected: Vec<Expected>,
 }
+
+type External = (String, &'static str, Vec<f32>);
 
 type Described = (String, TextureDimension, [u32; 3], Vec<[f32; 4]>);
 
@@ -347,7 +349,7 @@ fn uniform_value(kind: UniformType) -> (Uniform, Value) {
 }
 
 /// Returns a number per pixel for each external texture of a plan.
-fn textures(plan: &Plan) -> Vec<(String, &'static str, Vec<f32>)> {
+fn textures(plan: &Plan) -> Vec<External> {
     let is_of_plan =
         |planned: &&fragbuf_codegen::PlannedResource| planned.is_external() && !planned.is_of_description();
     let external = plan.resources.iter().filter(is_of_plan);
@@ -378,7 +380,7 @@ fn images(
     judge: Judge,
     plan: &Plan,
     scenes: &[(Vec<u8>, Vec<Quad>)],
-    (textures, described): (&[(String, &'static str, Vec<f32>)], &[Described]),
+    (textures, described): (&[External], &[Described]),
     settings: Settings,
 ) -> Vec<Vec<[f64; 3]>> {
     if judge == Judge::Reference && is_exact(plan) {

@@ -11,12 +11,15 @@ use super::technique::BACKGROUND;
 /// The width and height of the frames: not a multiple of a quad of pixels, of a tile, or of each other.
 pub const SIZE: [u32; 2] = [13, 7];
 
+/// A texture: its name in the description, columns, rows and slices, texels.
+type TextureOf<'a> = (&'a str, [u32; 3], Vec<[f32; 4]>);
+
 /// An effect with its textures.
 pub struct Lookup {
     pub name: &'static str,
     pub variant: Variant,
     /// Name in the description, columns, rows and slices, texels.
-    pub textures: Vec<(&'static str, [u32; 3], Vec<[f32; 4]>)>,
+    pub textures: Vec<TextureOf<'static>>,
     expected: fn(&Lookup, &Frame<'_>, [i64; 2]) -> Option<[f64; 4]>,
 }
 
@@ -81,10 +84,15 @@ fn lookup(
     name: &'static str,
     text: &str,
     storage: &str,
-    textures: Vec<(&'static str, [u32; 3], Vec<[f32; 4]>)>,
+    textures: Vec<TextureOf<'static>>,
     expected: fn(&Lookup, &Frame<'_>, [i64; 2]) -> Option<[f64; 4]>,
 ) -> Lookup {
-    let keep = if storage.starts_with("ab_") { "" } else { "keep 8;" };
+    // No software driver has an interlock, which the technique prefers.
+    let keep = match storage {
+        "kb_stream" => "keep 8; sync: spin_lock;",
+        _ if storage.starts_with("ab_") => "",
+        _ => "keep 8;",
+    };
     let text = text.replace("STORAGE", storage).replace("KEEP", keep);
     let parsed = fragbuf_syntax::parse(&text, "lookups.fragbuf");
     assert!(parsed.diagnostics.is_empty(), "{}", parsed.diagnostics);
@@ -107,7 +115,7 @@ const FILTERS: &str = "buffer Filters from STORAGE {
     }
 }";
 
-fn filtered_textures() -> Vec<(&'static str, [u32; 3], Vec<[f32; 4]>)> {
+fn filtered_textures() -> Vec<TextureOf<'static>> {
     let mut numbers = Numbers::seeded(77);
     let mut texels = |count: usize| -> Vec<[f32; 4]> {
         (0..count).map(|_| std::array::from_fn(|_| numbers.below(1000) as f32 / 1000.0)).collect()
@@ -134,13 +142,13 @@ fn sum(one: [f64; 4], other: [f64; 4]) -> [f64; 4] {
 }
 
 /// Returns the texel that is nearest to coordinates.
-fn texel((_, size, texels): &(&str, [u32; 3], Vec<[f32; 4]>), at: [i64; 3]) -> [f64; 4] {
+fn texel((_, size, texels): &TextureOf<'_>, at: [i64; 3]) -> [f64; 4] {
     let [x, y, z] = std::array::from_fn(|axis| at[axis].clamp(0, i64::from(size[axis]) - 1) as usize);
     texels[(z * size[1] as usize + y) * size[0] as usize + x].map(f64::from)
 }
 
 /// Returns the mean of the texels around a place, each weighted by its distance to the place along every axis.
-fn linear(texture: &(&str, [u32; 3], Vec<[f32; 4]>), at: [f64; 3]) -> [f64; 4] {
+fn linear(texture: &TextureOf<'_>, at: [f64; 3]) -> [f64; 4] {
     let mut mean = [0.0; 4];
     let place: [f64; 3] = std::array::from_fn(|axis| at[axis].clamp(0.0, 1.0) * f64::from(texture.1[axis]) - 0.5);
     for corner in 0..8 {

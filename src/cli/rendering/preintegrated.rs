@@ -132,6 +132,7 @@ fn value(transfer: &[[f32; 4]], scalar: f64) -> [f64; 4] {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::{SHELLS, Settings, builtin, table, value};
 

@@ -150,7 +150,7 @@ impl<'a> Source<'a> {
             (TextureDimension::D3, None) => Err(usage(format!(
                 "`{name}` has three dimensions: add `,slices=N`, the number of slices one below the other in the image"
             ))),
-            (TextureDimension::D3, Some(slices)) if height % slices != 0 => {
+            (TextureDimension::D3, Some(slices)) if !height.is_multiple_of(slices) => {
                 Err(usage(format!("the image has {height} rows, which {slices} slices do not divide")))
             }
             (TextureDimension::D3, Some(slices)) => Ok(slices),

@@ -100,7 +100,7 @@ impl Solids {
     fn tetrahedra(&mut self, centre: [f64; 3], axes: [[f64; 3]; 3], id: u32) {
         self.octahedron(centre, axes, id, [255; 4]);
         let tip = |bits: usize| {
-            std::array::from_fn(|i| centre[i] + if bits % 2 == 0 { 1.0 } else { -1.0 } * axes[bits / 2][i])
+            std::array::from_fn(|i| centre[i] + if bits.is_multiple_of(2) { 1.0 } else { -1.0 } * axes[bits / 2][i])
         };
         let within = [centre[0] + 1.75, centre[1] - 1.25, centre[2] + 0.03];
         for (a, b) in (0..6).flat_map(|a| (a + 1..6).map(move |b| (a, b))).filter(|(a, b)| a / 2 != b / 2) {
@@ -124,7 +124,8 @@ impl Solids {
     /// Adds an octahedron of three half axes.
     fn octahedron(&mut self, centre: [f64; 3], axes: [[f64; 3]; 3], id: u32, color: [u8; 4]) {
         let tip = |axis: usize, sign: f64| std::array::from_fn(|i| centre[i] + sign * axes[axis][i]);
-        let tips: Vec<[f64; 3]> = (0..6).map(|bits| tip(bits / 2, if bits % 2 == 0 { 1.0 } else { -1.0 })).collect();
+        let tips: Vec<[f64; 3]> =
+            (0..6).map(|bits| tip(bits / 2, if bits.is_multiple_of(2) { 1.0 } else { -1.0 })).collect();
         for (a, b, c) in (0..2).flat_map(|a| (2..4).flat_map(move |b| (4..6).map(move |c| (a, b, c)))) {
             self.outward([tips[a], tips[b], tips[c]], &tips, id, color);
         }

@@ -114,12 +114,14 @@ fn every_technique_with_a_material_in_es() {
 }
 
 /// Rows that are not drawn, each with the reason: an extension that the driver lacks, or no technique takes it.
-const ROWS_LEFT_OUT: [(&str, &str, &str); 5] = [
+const ROWS_LEFT_OUT: [(&str, &str, &str); 7] = [
     ("storage", "wide_cascade", "GL_NV_shader_atomic_int64"),
     ("sync", "interlock", "GL_ARB_fragment_shader_interlock"),
     ("sync", "interlock_ordered", "GL_ARB_fragment_shader_interlock"),
     ("ties", "submission", "GL_ARB_fragment_shader_interlock"),
     ("resolve", "closure", NO_TECHNIQUE),
+    ("resolve", "pairs", NO_TECHNIQUE),
+    ("resolve", "after_images", NO_TECHNIQUE),
 ];
 
 /// Rows that need a feature that OpenGL ES lacks.
