@@ -91,34 +91,61 @@ impl Settings {
 /// Returns the size and the texels of the table: premultiplied colours.
 pub(super) fn table(transfer: &[[f32; 4]], settings: &Settings) -> ([u32; 3], Vec<[f32; 4]>) {
     let Settings { scalars, lengths, length, extinction } = *settings;
-    let share = |index: u32, count: u32| f64::from(index) / f64::from(count.max(2) - 1);
-    let mut texels = Vec::with_capacity((scalars * scalars * lengths) as usize);
-    for slice in 0..lengths {
-        for row in 0..scalars {
-            for column in 0..scalars {
-                let (front, back) = (share(column, scalars), share(row, scalars));
-                let depth = share(slice, lengths) * f64::from(length * extinction);
-                texels.push(segment(transfer, (front, back), depth));
-            }
+    let share = |index: u32| f64::from(index) / f64::from(scalars.max(2) - 1);
+    let shortest = f64::from(length * extinction) / f64::from(lengths.max(2) - 1);
+    let area = (scalars * scalars) as usize;
+    let mut texels = vec![[0.0; 4]; area * lengths as usize];
+    for (place, pair) in (0..scalars).flat_map(|row| (0..scalars).map(move |column| (column, row))).enumerate() {
+        let mut segment = Segment::new(transfer, (share(pair.0), share(pair.1)), shortest);
+        for texel in texels.iter_mut().skip(place).step_by(area) {
+            *texel = segment.color();
+            segment.lengthen();
         }
     }
     ([scalars, scalars, lengths], texels)
 }
 
-/// Integrates emission and absorption along a segment, by the midpoint of each step. `depth`: its length in units of the extinction.
-fn segment(transfer: &[[f32; 4]], (front, back): (f64, f64), depth: f64) -> [f32; 4] {
-    let (mut color, mut transmittance) = ([0.0_f64; 3], 1.0_f64);
-    for step in 0..STEPS {
-        let along = (f64::from(step) + 0.5) / f64::from(STEPS);
-        let [red, green, blue, alpha] = value(transfer, front + (back - front) * along);
-        let passes = (-alpha * depth / f64::from(STEPS)).exp();
-        for (sum, channel) in color.iter_mut().zip([red, green, blue]) {
-            *sum += transmittance * (1.0 - passes) * channel;
-        }
-        transmittance *= passes;
+/// A segment between two scalars, in steps of equal lengths, each with the transfer function at its middle.
+struct Segment {
+    steps: Vec<Step>,
+}
+
+/// A step of a segment.
+struct Step {
+    color: [f64; 3],
+    /// The light that passes the step, of the segment of the present length, and of the shortest one.
+    passes: f64,
+    shortest: f64,
+}
+
+impl Segment {
+    /// Returns the segment of length 0. `shortest`: the length of the next one, in units of the extinction.
+    fn new(transfer: &[[f32; 4]], (front, back): (f64, f64), shortest: f64) -> Self {
+        let step = |index: u32| {
+            let along = (f64::from(index) + 0.5) / f64::from(STEPS);
+            let [red, green, blue, alpha] = value(transfer, front + (back - front) * along);
+            let shortest = (-alpha * shortest / f64::from(STEPS)).exp();
+            Step { color: [red, green, blue], passes: 1.0, shortest }
+        };
+        Segment { steps: (0..STEPS).map(step).collect() }
     }
-    let [red, green, blue] = color.map(|channel| channel as f32);
-    [red, green, blue, (1.0 - transmittance) as f32]
+
+    /// Adds the shortest length: light that passes two lengths passes one after the other.
+    fn lengthen(&mut self) {
+        self.steps.iter_mut().for_each(|step| step.passes *= step.shortest);
+    }
+
+    /// Integrates emission and absorption front to back.
+    fn color(&self) -> [f32; 4] {
+        let (mut sum, mut transmittance) = ([0.0_f64; 3], 1.0_f64);
+        for Step { color: [red, green, blue], passes, .. } in &self.steps {
+            let share = transmittance * (1.0 - passes);
+            sum = [sum[0] + share * red, sum[1] + share * green, sum[2] + share * blue];
+            transmittance *= passes;
+        }
+        let [red, green, blue] = sum.map(|channel| channel as f32);
+        [red, green, blue, (1.0 - transmittance) as f32]
+    }
 }
 
 /// Returns the transfer function at a scalar from 0 to 1, linear between texels.
