@@ -65,7 +65,8 @@ impl RenderedTexture {
             match option.as_str() {
                 "camera" => camera = Some(value.parse::<CameraRequest>()?),
                 "size" => pixels = size(&value)?,
-                _ => uniforms.push((option, value)),
+                // Also a uniform of the name `camera` or `size`.
+                _ => uniforms.push((option.strip_prefix("uniform.").unwrap_or(&option).to_owned(), value)),
             }
         }
         let camera = camera.ok_or("`camera` is missing")?;

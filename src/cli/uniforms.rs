@@ -143,6 +143,12 @@ fn parse(name: &str, text: &str, variant: &Variant) -> Result<Given, Failure> {
 
 /// Warns of uniforms that the description reads and `given` does not set, with the options that set them.
 pub(crate) fn warn_unset(description: &str, given: &[(String, String)], variant: &Variant) {
+    warn_unset_as(description, "--uniform ", given, variant);
+}
+
+/// Warns of them as [`warn_unset`] does. `option`: what precedes a name and its value where they are set.
+pub(crate) fn warn_unset_as(description: &str, option: &str, given: &[(String, String)], variant: &Variant) {
+    let prefix = option;
     let is_read = |uniform: &&Uniform| {
         let is_unread =
             |warning: &Diagnostic| warning.code == codes::UNUSED_UNIFORM && warning.span == uniform.name.span;
@@ -157,7 +163,7 @@ pub(crate) fn warn_unset(description: &str, given: &[(String, String)], variant:
             UniformType::Vec3 => "X,Y,Z",
             UniformType::Vec4 => "X,Y,Z,W",
         };
-        format!("--uniform {}={value}", uniform.name.value)
+        format!("{prefix}{}={value}", uniform.name.value)
     };
     let options: Vec<String> = unset.iter().map(option).collect();
     let names: Vec<String> = unset.iter().map(|uniform| format!("`{}`", uniform.name.value)).collect();

@@ -137,7 +137,8 @@ impl Registry {
     /// Returns the rows that provide `capability`, on axes whose value a description chooses.
     pub fn providers_of(&self, capability: Capability) -> impl Iterator<Item = &Row> {
         self.rows.iter().filter(move |row| {
-            row.provides.contains(&capability) && self.axis(&row.axis).is_some_and(|axis| axis.chosen)
+            let is_chosen = self.axis(&row.axis).is_some_and(|axis| axis.chosen) && !Self::is_of_closures(row);
+            row.provides.contains(&capability) && is_chosen
         })
     }
 

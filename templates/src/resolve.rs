@@ -91,7 +91,7 @@ pub(crate) fn rows() -> Vec<Row> {
             ..Row::new(
                 "resolve",
                 BETWEEN,
-                "the closure of the description, `between |front, back, gap, u| { … }`, composited front to back",
+                "the closure `between` of the description, composited front to back",
                 "B06 §4.3; Porter & Duff 1984",
             )
         },
@@ -99,12 +99,7 @@ pub(crate) fn rows() -> Vec<Row> {
             calls: vec!["samples"],
             requires: vec![Capability::Sorted, Capability::OneResolve],
             edits: vec![Edit::Images("resolve".to_owned())],
-            ..Row::new(
-                "resolve",
-                STEPS,
-                "the closure of the description after its images, `image name |fragments, u| { … }`",
-                "",
-            )
+            ..Row::new("resolve", STEPS, "the closure of the description, after its images", "")
         },
     ]
 }

@@ -49,6 +49,12 @@ pub(crate) struct Items {
     constraints: usize,
 }
 
+/// The most textures of a description: WebGPU's default of sampled textures per stage, without those of rows.
+const MOST_TEXTURES: usize = 12;
+
+/// The most images of a description, each a buffer that a pass may bind.
+const MOST_IMAGES: usize = 8;
+
 impl Items {
     /// Adds the block `fragment`; a second block is an error.
     pub(crate) fn add_attributes(&mut self, rows: Vec<Declaration>, span: &SourceSpan, report: &mut Report) {
@@ -82,9 +88,26 @@ impl Items {
         self.functions.push(function);
     }
 
+    /// Reports textures and images beyond their greatest numbers, and removes them.
+    fn reject_too_many(&mut self, report: &mut Report) {
+        for (names, most, what) in [
+            (self.textures.iter().map(|texture| &texture.name).collect::<Vec<_>>(), MOST_TEXTURES, "textures"),
+            (self.images.iter().collect(), MOST_IMAGES, "images"),
+        ] {
+            if let Some(name) = names.get(most) {
+                let message = format!("more than {most} {what}");
+                let help = format!("devices bind no more in every pass: join several {what} into one");
+                report.push(Diagnostic::new(codes::UNSUPPORTED, &name.span, message, help));
+            }
+        }
+        self.images.truncate(MOST_IMAGES);
+        self.textures.truncate(MOST_TEXTURES);
+    }
+
     /// Reports names that two of the uniforms, textures and images have, because closures read all of them in the same way. Removes the second
     /// of each.
     pub(crate) fn reject_names_twice(&mut self, report: &mut Report) {
+        self.reject_too_many(report);
         let mut seen: Vec<Spanned<String>> = self.uniforms.iter().map(|uniform| uniform.name.clone()).collect();
         let mut is_new = |name: &Spanned<String>, what: &str| {
             let first = seen.iter().find(|other| other.value == name.value).cloned();
@@ -135,7 +158,11 @@ impl Items {
     /// Adds the closure of `resolve` or `between`; a second effect is an error.
     pub(crate) fn add_resolve(&mut self, function: RawFunction, span: &SourceSpan, report: &mut Report) {
         match self.resolve_span().or_else(|| self.choice_span("resolve")) {
-            Some(first) => report.push(duplicate(function.role.rust_name(), span, first)),
+            Some(first) => {
+                let message = "a description has one effect";
+                let help = "remove one: `resolve`, `between`, or the effect by its name";
+                report.push(Diagnostic::new(codes::DUPLICATE, span, message, help).label(first, FIRST));
+            }
             None => self.functions.push(function),
         }
     }

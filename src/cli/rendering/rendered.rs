@@ -35,7 +35,8 @@ pub(super) fn draw(texture: &RenderedTexture, task: &RenderTask<'_>, memory: Bud
     let (width, height) = texture.size;
     let settings = Settings { memory: geometry.memory.left(), ..Settings::new(width, height) };
     let mut device = Device::new(code, settings)?;
-    uniforms::warn_unset(&texture.description, &texture.uniforms, &variant);
+    let subject = format!("`--texture {name}`: {}", texture.description);
+    uniforms::warn_unset_as(&subject, ",uniform.", &texture.uniforms, &variant);
     for (name, value) in uniforms::values(&texture.uniforms, &variant, scene)? {
         device.set_uniform(&name, value)?;
     }

@@ -145,8 +145,8 @@ impl From<String> for Needed {
 }
 
 fn bindings(plan: &Plan, group: u32) -> Vec<Limit> {
-    let is_buffer = |planned: &PlannedResource| texture_of(planned).is_none() && plan.is_declared(planned);
-    let is_texture = |planned: &PlannedResource| texture_of(planned).is_some();
+    let is_buffer = |planned: &PlannedResource| !planned.is_texture() && plan.is_declared(planned);
+    let is_texture = PlannedResource::is_texture;
     let buffers = |pass: &PlannedPass| used(plan, pass, &[Access::Attachment, Access::Indirect], &is_buffer);
     let textures = |pass: &PlannedPass| used(plan, pass, &[Access::Attachment], &is_texture);
     // Fragment and compute stages may read the block of the frame and the description's uniforms, a vertex stage the camera.
@@ -219,7 +219,7 @@ fn used(plan: &Plan, pass: &PlannedPass, ignored: &[Access], is_kind: &dyn Fn(&P
 }
 
 fn sizes(plan: &Plan) -> Vec<Limit> {
-    let buffers = plan.resources.iter().filter(|planned| texture_of(planned).is_none());
+    let buffers = plan.resources.iter().filter(|planned| !planned.is_texture());
     let bytes: Vec<String> = buffers.map(|planned| format!("4 * ({})", planned.words)).collect();
     let uniforms = u64::from(UniformBlock::of(&plan.variant.uniforms).size);
     let frame = (4 * plan.fields.len() as u64).next_multiple_of(16);

@@ -32,12 +32,13 @@ fn resources(module: &naga::Module) -> Result<msl::EntryPointResourceMap, String
     for (_, variable) in module.global_variables.iter() {
         let Some(binding) = variable.binding else { continue };
         let slot = u8::try_from(binding.binding).map_err(|_| format!("binding {} is beyond 255", binding.binding))?;
-        if slot >= SIZES {
+        let is_texture = matches!(module.types[variable.ty].inner, naga::TypeInner::Image { .. });
+        // Textures have indices of their own.
+        if slot >= SIZES && !is_texture {
             return Err(format!("binding {slot} is not below {SIZES}, the buffer of sizes"));
         }
         let read_only = matches!(variable.space, naga::AddressSpace::Uniform)
             || matches!(variable.space, naga::AddressSpace::Storage { access } if !access.contains(naga::StorageAccess::STORE));
-        let is_texture = matches!(module.types[variable.ty].inner, naga::TypeInner::Image { .. });
         let target = match is_texture {
             true => msl::BindTarget { texture: Some(slot), ..msl::BindTarget::default() },
             false => msl::BindTarget { buffer: Some(slot), mutable: !read_only, ..msl::BindTarget::default() },
